@@ -162,13 +162,6 @@ bool is_doubtful(const CommissionResult& r) {
   return r.charge.speed.is_doubtful || r.discharge.speed.is_doubtful;
 }
 
-/// The printed value, configured: it must pass.
-CommissionSettings with_what_was_printed(CommissionSettings settings, const CommissionResult& r) {
-  if (r.wanted_settle_s > 0) settings.response.settle_s = r.wanted_settle_s;
-  if (r.wanted_ramp_w_max > 0) settings.step_w_max = r.wanted_ramp_w_max;
-  return settings;
-}
-
 /// Of the largest step, less the part hidden by noise and readings.
 struct Truth {
   bool is_within = false;
@@ -204,7 +197,9 @@ void expect_none_wrong(const CommissionSettings& settings, double soc_frac, std:
     const CommissionResult result = commission(nature, ++seed, settings, soc_frac);
     bool is_wrong = !is_right(result, truth, has_room);
     if (!passes(result)) {
-      const CommissionSettings reported = with_what_was_printed(settings, result);
+      CommissionSettings reported = settings;  // the printed value, configured: it must pass
+      if (result.wanted_settle_s > 0) reported.response.settle_s = result.wanted_settle_s;
+      if (result.wanted_ramp_w_max > 0) reported.step_w_max = result.wanted_ramp_w_max;
       is_wrong = is_wrong || !passes(commission(nature, seed, reported, soc_frac));
     }
     if (!is_wrong) continue;

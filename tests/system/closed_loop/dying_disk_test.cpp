@@ -21,7 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::AllOf;
-using ::testing::AnyOf;
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -45,7 +44,8 @@ class StateDisk {
   explicit StateDisk(const SimulatedSite& site)
       : folder_(site.folder.file("state")), control_(site.folder.file("dying_disk")) {
     fs::create_directory(folder_);
-    is_mounted_ = has_own_mounts() && mount_tmpfs("size=30m");
+    is_mounted_ =
+        has_own_mounts() && mount("bess_test", folder_.c_str(), "tmpfs", 0, "size=30m") == 0;
     setenv("LD_PRELOAD", BESS_DYING_DISK, 1);
     setenv("BESS_DYING_DISK", control_.c_str(), 1);
   }
@@ -101,9 +101,6 @@ class StateDisk {
     static const bool is_done =
         unshare(CLONE_NEWNS) == 0 && mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0;
     return is_done;
-  }
-  bool mount_tmpfs(const char* size) const {
-    return mount("bess_test", folder_.c_str(), "tmpfs", 0, size) == 0;
   }
 
   std::string folder_;
@@ -218,8 +215,8 @@ class DyingDisk : public SiteTest {
         EXPECT_THAT(text, Names("CRITICAL degraded"));
       }
       if (is_unknown) continue;
-      EXPECT_THAT(text,
-                  AllOf(AnyOf(HasSubstr(utc), HasSubstr(local_text_of(utc))), HasSubstr(reason)));
+      EXPECT_THAT(text, AllOf(::testing::AnyOf(HasSubstr(utc), HasSubstr(local_text_of(utc))),
+                              HasSubstr(reason)));
     }
     if (may_be_unknown) return;
     EXPECT_THAT(

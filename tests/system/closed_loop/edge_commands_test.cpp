@@ -10,9 +10,7 @@
 namespace bess {
 namespace {
 
-using ::testing::HasSubstr;
 using ::testing::Not;
-using ::testing::StartsWith;
 
 class EdgeCommands : public SiteTest {
  protected:
@@ -97,7 +95,7 @@ TEST_F(EdgeCommands, AHoldWhileTrippedSaysThatItIsNotFollowed) {
   ASSERT_NE(await_line(running, "reason=uncontrolled_power"), "");
   const auto hold = [&] { return ask({"hold", "-500", "--for", "6h"}).text; };
   EXPECT_THAT(hold(), Names("uncontrolled_power bess-edge clear --yes"));
-  EXPECT_THAT(await_line(running, "utc="), Not(HasSubstr("reason=held")));
+  EXPECT_THAT(await_line(running, "utc="), Not(::testing::HasSubstr("reason=held")));
   EXPECT_EQ(ask({"clear", "--yes"}).exit_code, 0);
   EXPECT_THAT(hold(), Not(Names("uncontrolled_power")));
   EXPECT_EQ(SimulatedSite::stop(running), 0);

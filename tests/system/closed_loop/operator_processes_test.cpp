@@ -17,11 +17,6 @@
 namespace bess {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::ContainsRegex;
-using ::testing::HasSubstr;
-using ::testing::Not;
-
 class OperatorProcesses : public SiteTest {
  protected:
   OperatorProcesses() : SiteTest(900) {}
@@ -102,7 +97,7 @@ TEST_F(Notify, WhatTheControllerMeasuresAndCountsIsPublished) {
     EXPECT_TRUE(state.value()[number].number().has_value()) << number;
   }
   EXPECT_STREQ(state.value()["mode"].text(), "running");
-  EXPECT_THAT(state.value()["today_since_utc"].text_or(""), HasSubstr(":00:00Z"));
+  EXPECT_THAT(state.value()["today_since_utc"].text_or(""), ::testing::HasSubstr(":00:00Z"));
   EXPECT_EQ(SimulatedSite::stop(running), 0);
   EXPECT_EQ(SimulatedSite::stop(notify), 0);
 }

@@ -18,7 +18,6 @@ namespace bess {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 /// The default, at the tick; the logged age is at the order, after the wait for a new one.
 constexpr int kPriceAgeSMax = 240 + 20 + 1;
@@ -101,7 +100,7 @@ TEST_F(PriceProcesses, WithoutItNothingIsDrivenAndItIsNamed) {
   const std::string said = edge.read_all();
   EXPECT_EQ(edge.wait(), 0) << said;
   EXPECT_THAT(said, HasSubstr("prices=no_fetcher"));
-  EXPECT_THAT(said, Not(HasSubstr("mode=running")));
+  EXPECT_THAT(said, ::testing::Not(HasSubstr("mode=running")));
 }
 
 TEST_F(PriceProcesses, ASecondOneIsRefused) {

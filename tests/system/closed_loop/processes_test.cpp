@@ -18,7 +18,6 @@ namespace {
 using ::testing::AllOf;
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 constexpr std::int32_t kScale = 900;  // from an hour before summer time on
 

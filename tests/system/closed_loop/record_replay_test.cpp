@@ -18,7 +18,6 @@
 namespace bess {
 namespace {
 
-using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -186,9 +185,10 @@ TEST_F(RecordCommand, ReadsWhatTheMapNamesAndWritesNothing) {
   EXPECT_EQ(recorded.exit_code, 0) << recorded.text;
   EXPECT_THAT(recorded.text, Names("0 127.0.0.1:" + std::to_string(site_.battery_port)));
   const std::string text = text_of_file(path_);
-  EXPECT_THAT(text, AllOf(HasSubstr("\"map\":\"alphaess\""), HasSubstr("{\"end\":"),
-                          Not(HasSubstr("\"function\":16")), Not(HasSubstr("\"function\":6")),
-                          Not(HasSubstr("127.0.0.1"))));
+  EXPECT_THAT(text,
+              ::testing::AllOf(HasSubstr("\"map\":\"alphaess\""), HasSubstr("{\"end\":"),
+                               Not(HasSubstr("\"function\":16")), Not(HasSubstr("\"function\":6")),
+                               Not(HasSubstr("127.0.0.1"))));
   const ProgramOutput fits = check(path_);
   EXPECT_EQ(fits.exit_code, 0) << fits.text;
   EXPECT_THAT(fits.text, Names("sign scale")) << "which cannot be judged";

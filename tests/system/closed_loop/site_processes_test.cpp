@@ -12,8 +12,6 @@
 namespace bess {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 
 constexpr std::int32_t kScale = 120;
@@ -70,7 +68,7 @@ TEST_F(SiteProcesses, ALimitIsObeyedUntilItIsCleared) {
     return said.text;
   };
   EXPECT_THAT(limit({"--charge", "700", "--for", "2h"}),
-              AllOf(Names("700 W"), HasSubstr(" 2023-03-26 ")));
+              ::testing::AllOf(Names("700 W"), HasSubstr(" 2023-03-26 ")));
   ChildProcess edge = controller();
   EXPECT_THAT(await_line(edge, " written=1 "), Names("ordered_power_w=700 reason=outside_limit"));
   limit({"--clear"});

@@ -15,8 +15,6 @@
 namespace bess {
 namespace {
 
-using ::testing::HasSubstr;
-
 constexpr double kTolerance = 0.001;
 
 class BatteryPeers : public PeerTest {

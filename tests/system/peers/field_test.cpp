@@ -20,7 +20,6 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 constexpr std::int32_t kScale = 60;  // a control cycle takes 2 s
 constexpr int kCycleS = 120;
@@ -385,7 +384,7 @@ TEST_P(Field, VictronSetPointEndsSooner) {
   if (HasFatalFailure()) return;
   const ProgramOutput check = commission();
   if (check.exit_code != 0) {
-    EXPECT_THAT(check.text, AllOf(HasSubstr("refresh_s"), Not(HasSubstr("settle_s"))));
+    EXPECT_THAT(check.text, AllOf(HasSubstr("refresh_s"), ::testing::Not(HasSubstr("settle_s"))));
     return;
   }
   start_edge();

@@ -10,8 +10,6 @@
 namespace bess {
 namespace {
 
-using ::testing::HasSubstr;
-
 class MeterPeers : public PeerTest, public ::testing::WithParamInterface<const char*> {
  protected:
   MeterPeers() : PeerTest("pymodbus") {}
@@ -24,7 +22,7 @@ TEST_P(MeterPeers, CheckReadsWhatTheMeterShows) {
     ChildProcess meter({kPython, BESS_SOURCE_DIR "/tests/system/peers/meter_peer.py", "--map",
                         GetParam(), "--watts", std::to_string(watts)});
     const std::string ready = meter.read_line();
-    ASSERT_THAT(ready, HasSubstr("127.0.0.1:"));
+    ASSERT_THAT(ready, ::testing::HasSubstr("127.0.0.1:"));
     const std::string config = site.write_config(
         {.guard_keys = "[meter]\nmap = \"" BESS_SOURCE_DIR "/edge/device/meters/" +
                        std::string(GetParam()) +

@@ -90,11 +90,6 @@ class Soak : public ::testing::Test {
                         "--fault", "all", "--fault-every", "5"},
                        prices_, port);
   }
-  /// The test's certificate authority among those of a real system.
-  std::string write_bundle() const {
-    const std::string system = text_of_file("/etc/ssl/certs/ca-certificates.crt");
-    return site_.folder.write("bundle.pem", system + text_of_file(ca_.ca()));
-  }
   RunResult run(int cycles);
   void follow(ChildProcess& edge, DroppingProxy& proxy, int cycles, RunResult& result);
   void let_ends_die(int cycle, int cycles);
@@ -102,7 +97,9 @@ class Soak : public ::testing::Test {
   SimulatedSite site_{setting_of("BESS_SOAK_SCALE", 2'000)};  // a control cycle is 60 ms
   std::string name_ = resolvable_name();
   DatedCertificate ca_{"DNS:" + name_};
-  std::string bundle_ = write_bundle();
+  /// The test's certificate authority among those of a real system.
+  std::string bundle_ = site_.folder.write(
+      "bundle.pem", text_of_file("/etc/ssl/certs/ca-certificates.crt") + text_of_file(ca_.ca()));
   std::string prices_;
   int battery_port_ = 0;  ///< behind the proxy
 };

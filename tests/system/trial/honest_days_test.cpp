@@ -48,12 +48,8 @@ TEST_P(HonestBattery, TripsNothingAmongKillsAndStepsOfTheClock) {
   }
 }
 
-std::string variant_name(const ::testing::TestParamInfo<HonestVariant>& info) {
-  return info.param.name;
-}
-
 INSTANTIATE_TEST_SUITE_P(Variants, HonestBattery, ::testing::ValuesIn(honest_variants()),
-                         variant_name);
+                         [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace
 }  // namespace bess::trial

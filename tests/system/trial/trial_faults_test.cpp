@@ -100,10 +100,8 @@ TEST_P(ShownFaultOfTheTrial, IsFoundWithOrdersOfEitherSign) {
   expect_found(kWays[0], Orders::kPairs, at_both ? 3 : 8);
 }
 
-std::string fault_name(const ::testing::TestParamInfo<ShownFault>& info) { return info.param.name; }
-
 INSTANTIATE_TEST_SUITE_P(Faults, ShownFaultOfTheTrial, ::testing::ValuesIn(kShownFaults),
-                         fault_name);
+                         [](const auto& info) { return std::string(info.param.name); });
 
 /// A fault that only the SoC shows, and the control cycles at full power until it is found.
 struct SocFault {

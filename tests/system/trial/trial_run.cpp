@@ -123,12 +123,8 @@ ControlSettings trial_settings(const HonestVariant& variant) {
 
 namespace {
 
-bool tells_of_energy(const ResponseFindings& findings) {
-  return findings.energy_share_percent != 0 || findings.rest_loss_w != 0;
-}
-
 void note_reported(const ResponseFindings& findings, FaultResult& result) {
-  if (!tells_of_energy(findings)) return;
+  if (findings.energy_share_percent == 0 && findings.rest_loss_w == 0) return;
   if (result.reported_cycles == 0) result.reported_cycles = result.cycles;
   result.reported = findings;
 }

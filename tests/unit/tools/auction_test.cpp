@@ -15,7 +15,6 @@ namespace bess {
 namespace {
 
 using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 constexpr const char* kStart = "2025-03-28T00:00:00Z";
 /// 28 to 31 March 2025, local; on the 30th the clock goes forward.

@@ -26,12 +26,6 @@ constexpr BatteryParameters kWithoutLosses{.power_w_max = 4'000,
                                            .discharge_efficiency = 1,
                                            .soc_min_frac = 0};
 
-BatteryServerSettings always(BatteryFault fault) {
-  BatteryServerSettings settings;
-  settings.faults = {.faults = {fault}, .every = 1};
-  return settings;
-}
-
 TEST(BatteryFaults, EveryFaultHasItsPlaceInTheTable) {
   int value = 0;
   for (const BatteryFaultInfo& info : battery_faults()) {
@@ -141,7 +135,9 @@ TEST(BatteryFaults, DisplayFaultsMatchTheirNames) {
         Row{BatteryFault::kSocInverted, 4'000, -1, 1},
         Row{BatteryFault::kSocRecalibrates, 4'000, 1, 1, 0.06}}) {
     SCOPED_TRACE(battery_faults()[static_cast<std::size_t>(row.fault) - 1].name);
-    LoopbackBattery loopback("block", always(row.fault));
+    BatteryServerSettings settings;
+    settings.faults = {.faults = {row.fault}, .every = 1};
+    LoopbackBattery loopback("block", settings);
     ModbusBattery battery(loopback.link(1'000), loopback.map, loopback.clock);
     BatteryMeasurement m;
     ASSERT_EQ(battery.read(m), Status::kOk);

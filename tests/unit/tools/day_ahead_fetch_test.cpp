@@ -16,8 +16,6 @@
 namespace bess {
 namespace {
 
-using ::testing::HasSubstr;
-
 /// 28 and 29 March 2025, local: the second day is published when the market starts.
 constexpr LocalDate kToday{2025, 3, 28}, kTomorrow{2025, 3, 29};
 constexpr std::int64_t kStartS = 1'743'163'200;  // 2025-03-28T12:00:00Z
@@ -144,7 +142,7 @@ TEST_F(FetchFromSimulatedAuction, ASitesMarketHasThemToo) {
                      "2025-03-28T12:05:00Z", "--set", "outlook.allow_http=true"});
   const std::string line = site.read_line();
   const std::string host = "127.0.0.1:";  // of the battery, then of the market
-  ASSERT_THAT(line, HasSubstr(host));
+  ASSERT_THAT(line, ::testing::HasSubstr(host));
   const int port = std::stoi(line.substr(line.rfind(host) + host.size()));
   const Result result = fetch_from(port);
   ASSERT_EQ(result.exit_code, 0) << result.output;

@@ -19,13 +19,9 @@ const MapVariant kSeveralUnits{"victron_ess3",
                                "three_phase"};  // 100 is the system, 228 the inverter
 constexpr int kSocAddress = 843, kSetpointAddress = 37;
 
-LoopbackBattery serial_battery() {
-  return LoopbackBattery(load_shipped_map(kSeveralUnits), {}, Transport::kRtu,
-                         LoopbackBattery::kHouse, kTimeScale);
-}
-
 TEST(SerialLine, TheDriverReachesEveryUnitOfTheMap) {
-  LoopbackBattery loopback = serial_battery();
+  LoopbackBattery loopback(load_shipped_map(kSeveralUnits), {}, Transport::kRtu,
+                           LoopbackBattery::kHouse, kTimeScale);
   ModbusBattery battery(loopback.link(2'000), loopback.map, loopback.clock);
   BatteryMeasurement m;
   for (const std::int32_t power_w : {3'000, -3'000}) {

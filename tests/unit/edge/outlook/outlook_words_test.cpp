@@ -14,9 +14,6 @@
 namespace bess {
 namespace {
 
-using testing::AllOf;
-using testing::Not;
-
 /// Decided on a break-even price, as the loop would log it.
 CycleRecord decided(std::int64_t utc_s, std::int32_t break_even_centi) {
   CycleRecord r{.utc_s = utc_s, .cycle = 1, .mode = Mode::kRunning};
@@ -55,7 +52,7 @@ TEST_F(OutlookTexts, WithoutPublishedPricesItIsWhatIsUsual) {
   CycleRecord record = decided(noon_utc_s_, 9'240);
   record.outlook.source = OutlookSource::kUsual;
   record.outlook.known_quarter_hours = 0;
-  EXPECT_THAT(text_of(record), AllOf(Names("usual 92.40"), Not(Names("180.20"))));
+  EXPECT_THAT(text_of(record), testing::AllOf(Names("usual 92.40"), testing::Not(Names("180.20"))));
 }
 
 TEST_F(OutlookTexts, ADayWithoutPublishedPricesIsATrouble) {

@@ -15,7 +15,6 @@ namespace bess {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::Not;
 using Kind = HttpOutcome::Kind;
 
 constexpr const char* kName = "prices.example";
@@ -178,7 +177,7 @@ TEST(HttpClient, SecretsStayWithTheirHostAndTls) {
   request.url = url_of(plain);
   EXPECT_EQ(get(request).kind, Kind::kDone);
   EXPECT_EQ(elsewhere.requests(), 1);
-  EXPECT_THAT(seen, Not(HasSubstr("secret")));
+  EXPECT_THAT(seen, ::testing::Not(HasSubstr("secret")));
   target = request.url;
   EXPECT_EQ(get(request).status, 302);  // in a loop
 }

@@ -11,12 +11,10 @@
 namespace bess {
 namespace {
 
-using testing::HasSubstr;
-
 TEST(MinuteFile, PricesReadBackToTheLastDigit) {
   const MinuteSeries series{0, {-30.258, 0.1 + 0.2, 100}, {-999, 1e-7, std::nan("")}};
   const std::string text = format_minute_csv(series, "");
-  EXPECT_THAT(text, HasSubstr("1970-01-01T00:00:00Z,-30.258,-999\n"));
+  EXPECT_THAT(text, testing::HasSubstr("1970-01-01T00:00:00Z,-30.258,-999\n"));
   const MinuteSeries read = parse_minute_csv(text, "written");
   EXPECT_EQ(read.indicative, series.indicative);
   EXPECT_EQ(read.settled[1], 1e-7);

@@ -16,8 +16,6 @@
 namespace bess {
 namespace {
 
-using ::testing::IsEmpty;
-
 const std::string kFolder = BESS_SOURCE_DIR "/tests/scenarios/outlook/";
 
 Scenario scenario_of(const std::string& text) {
@@ -60,7 +58,7 @@ TEST(OutlookScenarios, EveryFaultOfTheAuctionIsInOne) {
 }
 
 TEST(OutlookScenarios, TheRuleFindsACent) {
-  EXPECT_THAT(found_after([](CycleRecord&) {}), IsEmpty());
+  EXPECT_THAT(found_after([](CycleRecord&) {}), ::testing::IsEmpty());
   const auto found = found_after([](CycleRecord& cycle) { ++cycle.outlook.break_even_centi; });
   ASSERT_EQ(found.size(), 1U);
 }

@@ -7,7 +7,6 @@ namespace {
 
 using testing::EndsWith;
 using testing::HasSubstr;
-using testing::Not;
 
 TEST(ProgressLine, ShowsDoneRateAndTheRest) {
   EXPECT_EQ(
@@ -33,7 +32,7 @@ TEST(ProgressLine, FitsItsRowAndTheNoteGivesWayFirst) {
   EXPECT_THAT(progress_line("train c51", "steps", state, note, 60), HasSubstr("ETA 289 s)  loss"));
   EXPECT_THAT(progress_line("train c51", "steps", state, note, 50), EndsWith("ETA 289 s)"));
   EXPECT_THAT(progress_line("fetch", "windows", state, "two\nlines\x1b[2J", 80),
-              Not(HasSubstr("\n")));
+              testing::Not(HasSubstr("\n")));
 }
 
 }  // namespace

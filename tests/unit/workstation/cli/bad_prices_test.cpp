@@ -10,10 +10,8 @@
 namespace bess {
 namespace {
 
-using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
-using testing::StartsWith;
 
 class BadPrices : public TrainCommands {
  protected:
@@ -31,7 +29,8 @@ TEST_F(BadPrices, EachIsOneClearLine) {
   for (const PriceCase& c : cases) {
     SCOPED_TRACE(c.name);
     const std::string output = evaluated(c.text, 1);
-    EXPECT_THAT(output, AllOf(StartsWith("bess-train: "), Names(c.names), Not(HasSubstr("\x1b"))));
+    EXPECT_THAT(output, testing::AllOf(testing::StartsWith("bess-train: "), Names(c.names),
+                                       Not(HasSubstr("\x1b"))));
     EXPECT_EQ(std::ranges::count(output, '\n'), 1) << output;
   }
 }

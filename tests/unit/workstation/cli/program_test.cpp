@@ -16,8 +16,6 @@
 namespace bess {
 namespace {
 
-using testing::HasSubstr;
-
 TEST(Program, OutputThatCannotBeWrittenIsAnError) {
   if (!std::filesystem::is_character_file("/dev/full")) {
     GTEST_SKIP() << "needs /dev/full, which is absent";
@@ -31,7 +29,7 @@ TEST(Program, AByteOrderMarkBeforeTheConfigurationIsSkipped) {
   const TemporaryFolder folder;
   const std::string config = folder.write("run.toml", "\xEF\xBB\xBF[train]\nsteps = 7\n");
   const CommandResult result = run_train({"config", "--config", config});
-  EXPECT_THAT(result.output, HasSubstr("steps = 7 "));
+  EXPECT_THAT(result.output, testing::HasSubstr("steps = 7 "));
   EXPECT_EQ(result.exit_code, 0);
 }
 

@@ -17,8 +17,6 @@
 namespace bess {
 namespace {
 
-using testing::HasSubstr;
-
 class RulesCli : public testing::Test {
  protected:
   RulesCli() { write_minute_file(prices_, small_series(), ""); }
@@ -99,7 +97,7 @@ TEST_F(RulesCli, PriceShowsEachRuleAloneAndAllTogether) {
       "[[rule]]\nname = \"far\"\nprice_min = 1400\nat_most = \"idle\"\n"
       "[[rule]]\nname = \"steady\"\nnever_rises_with = \"minute\"\n");
   const std::string arguments = "price --rules " + file + " --policy rbc:20:150" + with_prices();
-  EXPECT_THAT(rules_output(arguments), HasSubstr("\nsteady "));
+  EXPECT_THAT(rules_output(arguments), testing::HasSubstr("\nsteady "));
   const std::vector<Json> lines = json_lines(rules_output(arguments + " --json"));
   const Json& first = lines.front();
   EXPECT_NEAR(number(first, "profit_eur_per_day_per_mwh"), 0, 1) << "idles at all of these prices";

@@ -16,7 +16,6 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
-using testing::Not;
 
 /// Two months of three days; each policy earns this amount on its second day, and 10 EUR on every
 /// other one.
@@ -54,7 +53,7 @@ TEST(BacktestReport, ShowsTheFittingDaysOfEachMonth) {
               AllOf(HasSubstr("{\"month\":\"2023-04\",\"fitted_days\":90}"),
                     HasSubstr("\"not_traded\":[{\"month\":\"2023-02\",\"reason\":\"31 ")));
   fitted.fitted_days = {120, 120};
-  EXPECT_THAT(format_backtest_table(fitted), AllOf(Names("120"), Not(Names("90"))));
+  EXPECT_THAT(format_backtest_table(fitted), AllOf(Names("120"), testing::Not(Names("90"))));
 }
 
 /// April earned 10 a day more than the first, May 20: with two months the error is 5, regardless of

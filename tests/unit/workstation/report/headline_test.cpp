@@ -11,7 +11,6 @@
 namespace bess {
 namespace {
 
-using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -55,7 +54,8 @@ TEST(Headline, IsCarriedOverAndNamesTheFriendlierAccounting) {
   std::vector<NamedEvaluation> evaluations = all();
   Headline headline = headline_of(evaluations).value();
   EXPECT_DOUBLE_EQ(headline.reset_profit.value(), 60 + kGivenAwayEur / 2);
-  EXPECT_THAT(headline_text(headline), AllOf(Names("60.0 EUR 62.5"), Not(Names("EUR/MWh"))));
+  EXPECT_THAT(headline_text(headline),
+              testing::AllOf(Names("60.0 EUR 62.5"), Not(Names("EUR/MWh"))));
   Evaluation& days = evaluations[3].carried_over;
   days.days.back().soc_start_frac = 0.25;  // a quarter of 2 MWh more at the end
   BatteryParameters battery;

@@ -15,9 +15,6 @@ namespace bess {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
 
 const std::string kIdleProgram = std::string(kIdleCosts) + kNoThresholds +
                                  "[distil]\nepochs = 12\nlearning_rate = 0.03\n"
@@ -185,7 +182,8 @@ TEST_F(RefreshedTwice, AdoptsOnRealPricesAndRefusesOnSpoiltOnes) {
                                        "2023-04-20T22:00:00Z"),
                     "");
   EXPECT_THAT(refresh("may.csv").output,
-              AllOf(Names("site.refused-2023-05-20"), Not(HasSubstr("site.before-2023-05-20"))));
+              testing::AllOf(Names("site.refused-2023-05-20"),
+                             testing::Not(testing::HasSubstr("site.before-2023-05-20"))));
   expect_same(path("site"), second);
   EXPECT_THAT(folders(),
               testing::ElementsAre("site", "site.before-2023-03-31", "site.refused-2023-05-20"));

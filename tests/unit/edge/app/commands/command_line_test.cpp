@@ -11,8 +11,6 @@
 namespace bess {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 TEST(EdgeCommandLine, EveryCommandHasHelpWithExitCodes) {
@@ -57,7 +55,7 @@ TEST(EdgeCommandLine, ATypingErrorIsReportedWithASuggestion) {
   for (const auto& [words, complaint] : slips) {
     const EdgeOutput said = run_edge_words(words);
     EXPECT_EQ(said.exit_code, 2) << complaint;
-    EXPECT_THAT(said.text(), AllOf(StartsWith("bess-edge: "), Names(complaint)));
+    EXPECT_THAT(said.text(), ::testing::AllOf(StartsWith("bess-edge: "), Names(complaint)));
     EXPECT_EQ(said.text().find('\n'), said.text().size() - 1) << said.text();
   }
 }

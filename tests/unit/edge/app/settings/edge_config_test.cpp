@@ -15,8 +15,6 @@
 namespace bess {
 namespace {
 
-using ::testing::StartsWith;
-
 /// A valid configuration; a test adds or replaces a piece of it.
 std::string valid_text() {
   return "control = true\n"
@@ -221,7 +219,8 @@ TEST_F(ConfigFile, EveryMistakeIsOneClearLineWithItsPlace) {
     EXPECT_THAT(error_, Names(mistake.codes)) << mistake.after;
     EXPECT_EQ(error_.find('\n'), std::string::npos) << error_;
     if (mistake.line > 0) {
-      EXPECT_THAT(error_, StartsWith(folder_.file("edge.toml:") + std::to_string(mistake.line)));
+      EXPECT_THAT(error_,
+                  ::testing::StartsWith(folder_.file("edge.toml:") + std::to_string(mistake.line)));
     }
   }
 }

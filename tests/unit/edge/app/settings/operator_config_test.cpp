@@ -18,14 +18,12 @@ struct Pieces {
   std::string battery = "", guard = "", rest = "";
 };
 
-std::string toml_of(const Pieces& pieces) {
-  return std::string("[battery]\n") + kMapLine + pieces.battery +
-         "[price]\nurl = \"http://127.0.0.1:1/records\"\n[guard]\n" + pieces.guard + pieces.rest;
-}
-
 bool load_pieces(const Pieces& pieces, EdgeConfig& config, std::string& error) {
   const TemporaryFolder folder;
-  return load_edge_config(folder.write("edge.toml", toml_of(pieces)), config, error);
+  const std::string text = std::string("[battery]\n") + kMapLine + pieces.battery +
+                           "[price]\nurl = \"http://127.0.0.1:1/records\"\n[guard]\n" +
+                           pieces.guard + pieces.rest;
+  return load_edge_config(folder.write("edge.toml", text), config, error);
 }
 
 TEST(OperatorConfig, WithoutKeysNothingIsRequested) {

@@ -11,9 +11,6 @@
 namespace bess {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-
 struct Loaded {
   TemporaryFolder folder;
   std::unique_ptr<EdgeConfig> config = std::make_unique<EdgeConfig>();
@@ -92,7 +89,7 @@ TEST(SiteConfig, EveryMistakeNamesItsCorrection) {
   for (const auto& [sections, message] : mistakes) {
     const Loaded loaded(sections);
     EXPECT_FALSE(loaded.is_good) << sections;
-    EXPECT_THAT(loaded.error, AllOf(Names(message), HasSubstr("edge.toml:")));
+    EXPECT_THAT(loaded.error, ::testing::AllOf(Names(message), ::testing::HasSubstr("edge.toml:")));
   }
   const Loaded no_grid("[meter]\nsource = \"battery\"\n", "huawei_luna2000");
   EXPECT_THAT(no_grid.error, Names("huawei_luna2000 grid"));

@@ -10,8 +10,6 @@
 namespace bess {
 namespace {
 
-using ::testing::HasSubstr;
-
 class CommissionFile : public ::testing::Test {
  protected:
   CommissionFile() {
@@ -81,7 +79,7 @@ TEST_F(CommissionFile, KeepsWhatWasMeasuredAndStillReadsOlderFiles) {
   for (const char* const line :
        {"charge_measured_w = 493\n", "charge_lag_ms = 1200\n", "charge_time_constant_ms = 3100\n",
         "charge_ramp_w_per_s = 40\n", "meter_percent = 98\n"}) {
-    EXPECT_THAT(text, HasSubstr(line));
+    EXPECT_THAT(text, ::testing::HasSubstr(line));
   }
   EXPECT_EQ(text.find("discharge"), std::string::npos);
   folder_.write("state/commissioned.toml", text.substr(0, text.find("charge_measured_w")));

@@ -9,7 +9,6 @@
 namespace bess {
 namespace {
 
-using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 class Channels : public Mqtt {
@@ -17,9 +16,6 @@ class Channels : public Mqtt {
   void SetUp() override {
     Mqtt::SetUp();
     settings_.every_s = 1;
-  }
-  void use_stuck_command() {
-    settings_.command = "echo x >>" + folder_.file("command_began") + "; sleep 1000";
   }
   /// The same settings as a file.
   std::string config() {
@@ -57,7 +53,7 @@ class Channels : public Mqtt {
 };
 
 TEST_F(Channels, AnAlarmReachesTheGoodChannelWhateverTheCommandDoes) {
-  use_stuck_command();
+  settings_.command = "echo x >>" + folder_.file("command_began") + "; sleep 1000";
   Running running(*this);
   set_status("degraded", {"first"});
   ASSERT_NE(running.all->await("/event", "WARN first"), "");
@@ -179,8 +175,8 @@ TEST_F(Channels, ANotifierThatCannotLockStillReports) {
   set_status("degraded", {"trouble"});
   const ProgramOutput said = notify_output({"--config", file, "--once"});
   EXPECT_EQ(said.exit_code, 0);
-  EXPECT_THAT(said.text, AllOf(Names("/proc/nowhere/lock /proc/nowhere/told.json"),
-                               HasSubstr("ALERT: WARN trouble")));
+  EXPECT_THAT(said.text, ::testing::AllOf(Names("/proc/nowhere/lock /proc/nowhere/told.json"),
+                                          HasSubstr("ALERT: WARN trouble")));
 }
 
 }  // namespace

@@ -24,10 +24,8 @@
 namespace bess {
 namespace {
 
-using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::StartsWith;
 
 std::string write_secret(const TemporaryFolder& folder, const char* name, const char* text,
                          mode_t mode = 0600) {
@@ -160,7 +158,7 @@ TEST(ChildProgram, WhatDoesNotEndIsKilledWithItsChildren) {
   EXPECT_NE(run_program({"/bin/sh", "-c", "exec >&-; sleep 1000"}, "", 100).trouble, "");
   EXPECT_NE(run_program({"/usr/bin/yes"}, "", 60'000).trouble, "");
   EXPECT_THAT(run_program({"/no/such"}, "", 100).trouble,
-              AllOf(Names("/no/such"), HasSubstr(std::strerror(ENOENT))));
+              ::testing::AllOf(Names("/no/such"), HasSubstr(std::strerror(ENOENT))));
 }
 
 TEST(ChildProgram, IsReadWithItsErrors) {
@@ -265,7 +263,7 @@ TEST_F(AlertCommand, IsGivenSeverityTitleAndTextInItsEnvironmentAndItsInput) {
                 "cat; } >" +
                 folder_.file("said")),
             "");
-  EXPECT_THAT(said(), StartsWith("alarm|[bess garage] "));
+  EXPECT_THAT(said(), ::testing::StartsWith("alarm|[bess garage] "));
   EXPECT_THAT(said(), HasSubstr("|garage|battery|2023-03-27T00:02:00Z\n"));
   EXPECT_THAT(said(), Names("2023-03-27 01:57"));
   EXPECT_THAT(said(), HasSubstr("Ann, +32 2 555 01 23"));

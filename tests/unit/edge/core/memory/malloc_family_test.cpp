@@ -21,10 +21,6 @@ constexpr int kCheckFailed = 70;
 // The compiler may drop a pair of malloc and free whose pointer is unused.
 void* volatile kept = nullptr;
 
-bool is_aligned(const void* payload, std::size_t alignment) {
-  return reinterpret_cast<std::uintptr_t>(payload) % alignment == 0;
-}
-
 struct Member {
   const char* name;
   std::function<void*()> call;
@@ -55,7 +51,7 @@ TEST(MallocFamily, EveryMemberGivesMemoryBeforeTheSeal) {
   for (const Member& member : kMembers) {
     void* const payload = member.call();
     ASSERT_NE(payload, nullptr) << member.name;
-    EXPECT_TRUE(is_aligned(payload, member.alignment)) << member.name;
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(payload) % member.alignment, 0U) << member.name;
     std::memset(payload, 0xA5, 5);
     free(payload);
   }

@@ -12,7 +12,6 @@
 namespace bess {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
@@ -97,7 +96,7 @@ TEST_F(DriverTest, RefreshFeedsOnlyWhenDueAndOnlyAnOrderInForce) {
   t.device.pass_s(5);
   EXPECT_THAT(t.refresh_writes(), IsEmpty());
   t.device.pass_s(15);
-  EXPECT_THAT(t.refresh_writes(), ElementsAre(WriteRecord{1, 16, 12, {60}}));
+  EXPECT_THAT(t.refresh_writes(), ::testing::ElementsAre(WriteRecord{1, 16, 12, {60}}));
   ASSERT_EQ(t.driver->release(), Status::kOk);
   t.device.take_writes();
   t.device.pass_s(60);

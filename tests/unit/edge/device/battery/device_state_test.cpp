@@ -7,9 +7,6 @@
 namespace bess {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
-
 enum class Told { kAlarm, kWarning, kOffGrid, kNothing };
 
 struct StateCase {
@@ -189,8 +186,8 @@ TEST(DeviceState, AStartInBypassCanReleaseALeftoverOrder) {
   t.device.set(0x0880, {1, 0, 28'000, 0, 32'000, 2, 225, 0, 300, 255, 0});
   EXPECT_TRUE(t.reading().off_grid);
   EXPECT_TRUE(t.measured.dispatch_active);
-  EXPECT_THAT(t.release_writes(),
-              ElementsAre(fc16(0x0880, {0, 0, 32'000, 0, 32'000, 0, 0, 0, 90, 255, 0}, 85)));
+  EXPECT_THAT(t.release_writes(), ::testing::ElementsAre(fc16(
+                                      0x0880, {0, 0, 32'000, 0, 32'000, 0, 0, 0, 90, 255, 0}, 85)));
   t.device.set(0x0440, {3});
   MapUnderTest other(shipped_map("alphaess"));
   EXPECT_EQ(other.read(), Status::kImplausible) << "no such work mode is known";
@@ -207,7 +204,7 @@ TEST(DeviceState, AnSmaBatteryThatSleepsIsStillThisDevice) {
   MapUnderTest foreign(shipped_map("sma"), "bms_mode");
   foreign.device.set(30'845, {0, 106});
   EXPECT_EQ(foreign.driver->release(), Status::kImplausible);
-  EXPECT_THAT(foreign.device.writes, IsEmpty());
+  EXPECT_THAT(foreign.device.writes, ::testing::IsEmpty());
 }
 
 TEST(DeviceState, TheLowestBatteryPowerIsNoPower) {

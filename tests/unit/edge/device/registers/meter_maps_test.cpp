@@ -13,13 +13,9 @@
 namespace bess {
 namespace {
 
-std::string meter_map(const std::string& name) {
-  return std::string(BESS_SOURCE_DIR) + "/edge/device/meters/" + name + ".toml";
-}
-
 struct MeterUnderTest {
   explicit MeterUnderTest(const std::string& name, const std::string& variant = "")
-      : map(load_good_map(meter_map(name), variant)) {}
+      : map(load_good_map(BESS_SOURCE_DIR "/edge/device/meters/" + name + ".toml", variant)) {}
   /// Power in W; -1 with `status` set on failure.
   std::int32_t read() {
     std::int32_t power_w = -1;

@@ -10,9 +10,7 @@
 namespace bess {
 namespace {
 
-using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 TEST(LoggableUrl, HidesUsersAndSecretQueryValues) {
   const struct {
@@ -99,8 +97,8 @@ TEST_F(HeaderFile, MistakesAreOneLineWithoutTheContent) {
   };
   for (const auto& row : table) {
     EXPECT_FALSE(load(row.text, row.mode));
-    EXPECT_THAT(error_, AllOf(HasSubstr(folder_.file("headers")), Names(row.codes)));
-    EXPECT_THAT(error_, Not(HasSubstr("s3cret")));
+    EXPECT_THAT(error_, ::testing::AllOf(HasSubstr(folder_.file("headers")), Names(row.codes)));
+    EXPECT_THAT(error_, ::testing::Not(HasSubstr("s3cret")));
     EXPECT_EQ(error_.find('\n'), std::string::npos);
   }
   for (const std::string& path : {folder_.file("none"), folder_.file(".")}) {

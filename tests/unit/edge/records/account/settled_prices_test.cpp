@@ -10,8 +10,6 @@
 namespace bess {
 namespace {
 
-using ::testing::HasSubstr;
-
 constexpr std::int64_t kSettledQuarter = 1'679'785'200;
 constexpr PriceState kAsPublished = PriceState::kPublished, kAsValidated = PriceState::kValidated;
 
@@ -28,7 +26,7 @@ TEST(SettledPrices, AreWhatWasWritten) {
   EXPECT_EQ(read.find(kSettledQuarter + 899)->eur_per_mwh, 131.07);
   EXPECT_EQ(read.find(kSettledQuarter - 1), nullptr);
   EXPECT_EQ(read.find(kSettledQuarter + 1'800), nullptr);
-  EXPECT_THAT(prices.text(), HasSubstr("2023-03-25T23:00:00Z,131.07,validated\n"));
+  EXPECT_THAT(prices.text(), ::testing::HasSubstr("2023-03-25T23:00:00Z,131.07,validated\n"));
 }
 
 TEST(SettledPrices, WhatIsNewerCountsAndWhatIsValidatedStays) {

@@ -22,7 +22,6 @@
 namespace bess {
 namespace {
 
-using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 
 constexpr std::int64_t kDrainNs = 30 * kNanosecondsPerSecond;
@@ -95,7 +94,7 @@ TEST_F(Log, ARecordArrivesEverywhereAndARestartTakesItOver) {
     }
     EXPECT_THAT(status(), HasSubstr("\"cycles\": 100"));
     EXPECT_THAT(text_of_file(folder_.file("metrics.prom")),
-                ContainsRegex("bess_cycles_total[{].*[}] 100\n"));
+                ::testing::ContainsRegex("bess_cycles_total[{].*[}] 100\n"));
     const std::string csv = text_of_file(folder_.file("log.csv"));
     EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 101);
   }
@@ -157,11 +156,6 @@ int exit_code_with_room_for(rlim_t bytes, const Act& act) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-void make_room() {
-  const rlimit all{RLIM_INFINITY, RLIM_INFINITY};
-  setrlimit(RLIMIT_FSIZE, &all);
-}
-
 /// No file can be created: the first records are lost, and everything works as soon as there is
 /// room.
 TEST_F(Log, AStartWithoutRoomContinuesAndWritesOnceThereIs) {
@@ -171,7 +165,8 @@ TEST_F(Log, AStartWithoutRoomContinuesAndWritesOnceThereIs) {
     log->write(record_of(1));
     if (!log->drain(kDrainNs)) return 2;
     if (std::filesystem::exists(folder_.file("decisions.ring"))) return 3;
-    make_room();
+    const rlimit all{RLIM_INFINITY, RLIM_INFINITY};
+    setrlimit(RLIMIT_FSIZE, &all);
     log->write(record_of(2));
     return log->drain(kDrainNs) ? 0 : 4;
   });

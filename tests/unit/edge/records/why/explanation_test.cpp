@@ -11,11 +11,6 @@
 namespace bess {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::ContainsRegex;
-using ::testing::HasSubstr;
-using ::testing::Not;
-
 constexpr std::int64_t kTick = 1'763'901'120;  // 2025-11-23T12:32:00Z, 13:32 in Brussels
 
 /// Decision of the built-in student at noon at this price, as the loop would log it.
@@ -81,7 +76,7 @@ TEST_F(Why, EachNumberOfTheMarginsIsInTextAndJson) {
       if (margin.is_null()) continue;
       char number[32];
       std::snprintf(number, sizeof number, "%.2f", margin.number().value());
-      EXPECT_THAT(text, HasSubstr(number)) << margin.key();
+      EXPECT_THAT(text, ::testing::HasSubstr(number)) << margin.key();
     }
     EXPECT_EQ(margins.size(), 4u);
     EXPECT_DOUBLE_EQ(json.value()["price_eur_per_mwh"].number().value(), price_centi / 100.0);
@@ -143,7 +138,8 @@ TEST_F(Why, WithoutAPriceNothingIsInvented) {
   const Explanation explanation = explained();
   EXPECT_FALSE(explanation.has_margins);
   EXPECT_THAT(explanation_text(explanation, settings_),
-              AllOf(Names("holding no_price"), Not(ContainsRegex("[0-9][.][0-9]+ EUR/MWh"))));
+              ::testing::AllOf(Names("holding no_price"),
+                               ::testing::Not(::testing::ContainsRegex("[0-9][.][0-9]+ EUR/MWh"))));
   const Json json = explanation_json(explanation, settings_);
   EXPECT_TRUE(json.value()["margins"].is_null());
   EXPECT_TRUE(json.value()["price_eur_per_mwh"].is_null());

@@ -13,7 +13,6 @@
 namespace bess {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -96,10 +95,10 @@ TEST(KeysWithoutEffect, AreNamedWithTheReason) {
   config.control.reversals_per_hour_max = 30;
   config.control.reserve.push_back({.soc_e4 = 1'000});
   config.site.settings.meter = MeterSource::kBattery;
-  EXPECT_THAT(
-      keys_without_effect(config),
-      ElementsAre(Names("ramp_w_max 8000"), Names("cycles_per_day_max 6.2"),
-                  Names("reversals_per_hour_max"), Names("reserve 10.0 %"), Names("[meter]")));
+  EXPECT_THAT(keys_without_effect(config),
+              ::testing::ElementsAre(Names("ramp_w_max 8000"), Names("cycles_per_day_max 6.2"),
+                                     Names("reversals_per_hour_max"), Names("reserve 10.0 %"),
+                                     Names("[meter]")));
   config.site.settings.connection.import_w_max = 5'000;
   config.site.settings.connection.peak_w_max = 5'000;
   EXPECT_THAT(keys_without_effect(config).back(), Names("peak_w_max import_w_max"));

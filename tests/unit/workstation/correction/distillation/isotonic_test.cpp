@@ -34,12 +34,6 @@ bool feasible(int rows, int columns, const Values& x, const RowBounds& bounds) {
   return true;
 }
 
-Values random_lattice(int cells, Random& random, double spread = 1) {
-  Values y(static_cast<std::size_t>(cells));
-  for (double& value : y) value = spread * random.normal();
-  return y;
-}
-
 /// None, lower only, upper only, both; up to half of the rows at each end.
 RowBounds random_bounds(int rows, int kind, Random& random) {
   RowBounds bounds;
@@ -80,7 +74,8 @@ TEST(Isotonic, EveryLatticeIsOptimal) {
     const int rows = 1 + static_cast<int>(random.index(32));
     const int columns = 1 + static_cast<int>(random.index(16));
     const RowBounds bounds = random_bounds(rows, round % 4, random);
-    Values y = random_lattice(rows * columns, random);
+    Values y(static_cast<std::size_t>(rows * columns));
+    for (double& value : y) value = random.normal();
     for (int c = 0; c < rows * columns; ++c) {  // a trend, then some ties
       y[c] -= round % 3 * 0.1 * (c / columns);
       if (round % 5 == 4) y[c] = std::round(2 * y[c]) / 2;

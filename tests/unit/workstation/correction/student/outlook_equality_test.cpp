@@ -15,10 +15,6 @@
 namespace bess {
 namespace {
 
-StudentFile golden_student() {
-  return load_student(BESS_SOURCE_DIR "/tests/data/golden/outlook_student/student.json");
-}
-
 double eur(std::int32_t centi) { return static_cast<double>(centi) / kCentiPerEur; }
 
 MarketSteps market_of(const OutlookInputs& inputs) {
@@ -43,7 +39,8 @@ MarketSteps market_of(const OutlookInputs& inputs) {
 }
 
 std::vector<std::string> decided(const OutlookInputs& inputs) {
-  const StudentFile student = golden_student();
+  const StudentFile student =
+      load_student(BESS_SOURCE_DIR "/tests/data/golden/outlook_student/student.json");
   const MarketSteps market = market_of(inputs);
   const StudentPolicy policy(student.net, student.outlook);
   DecisionDigest digest;

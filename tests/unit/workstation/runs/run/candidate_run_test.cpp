@@ -13,8 +13,6 @@
 namespace bess {
 namespace {
 
-using testing::HasSubstr;
-
 /// Sells from `high` on, buys below `low`, EUR/MWh.
 StudentFile trader(int low, int high) {
   const auto at = [](int eur) { return 8 * (eur - kLatticePriceMinEurPerMwh); };
@@ -58,7 +56,7 @@ TEST(CandidateRun, CountsTheDecisionsThatDifferWhereTheRunsStudentIs) {
   }
   const std::string csv = differing_decisions_csv(candidate);
   EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv, '\n')), 1 + between);
-  EXPECT_THAT(csv, HasSubstr(",discharge,idle\n"));
+  EXPECT_THAT(csv, testing::HasSubstr(",discharge,idle\n"));
 }
 
 TEST(CandidateRun, IsWorseBeyondItsErrorAlone) {

@@ -18,8 +18,6 @@
 namespace bess {
 namespace {
 
-using testing::HasSubstr;
-
 std::string output_of(const std::string& arguments) { return output_of_command(arguments).output; }
 
 /// Minutes [from, until) of `series` are missing.
@@ -79,7 +77,8 @@ TEST(Size, ACellIsWhatEvaluateCountsAtItsOwnSize) {
   }
   const std::string csv = read_file(folder.file("sizes/size.csv"));
   EXPECT_EQ(CsvTable(csv, "size.csv").row_count(), 4U);
-  EXPECT_THAT(read_file(folder.file("sizes/size.html")), HasSubstr("<table id=\"map-1\">"));
+  EXPECT_THAT(read_file(folder.file("sizes/size.html")),
+              testing::HasSubstr("<table id=\"map-1\">"));
   EXPECT_EQ(load_run_config(folder.file("sizes/best.toml")).battery.wear_eur_per_mwh, 6);
 }
 

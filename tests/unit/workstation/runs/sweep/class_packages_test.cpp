@@ -17,8 +17,6 @@ namespace bess {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::AllOf;
-using testing::EndsWith;
 using testing::HasSubstr;
 
 constexpr const char* kPackaging = R"sh(#!/bin/sh
@@ -76,17 +74,18 @@ TEST_F(ClassPackages, TheInventoryHasEachSiteInItsClassAndInOneShare) {
   std::vector<PackagedClass> classes{{"22", {site("site-184", "22", "x")}, "0a0b0c0d", "1.g1.22"},
                                      {"11", {site("site-2", "11", "x")}, "00000001", "1.g1.11"}};
   EXPECT_EQ(format_inventory(classes, "armhf").substr(0, 10), "# Written ");
-  EXPECT_THAT(format_inventory(classes, "armhf"),
-              AllOf(HasSubstr("all:\n  vars: {bess_architecture: armhf}\n  children:\n"),
-                    HasSubstr("    class_22:\n      vars:\n        bess_class: \"22\"\n"
-                              "        bess_expected_student: \"0a0b0c0d\"\n"
-                              "        bess_package: \"{{ inventory_dir }}/22/"
-                              "bess-edge_1.g1.22_{{ bess_architecture }}.deb\"\n"
-                              "      hosts:\n"
-                              "        \"site-184\": {bess_expected_eur_per_day: 3.2500}\n"),
-                    EndsWith("    rollout_1:\n      hosts:\n        \"site-184\":\n"
-                             "    rollout_10:\n      hosts:\n        \"site-2\":\n"
-                             "    rollout_100:\n      hosts: {}\n")));
+  EXPECT_THAT(
+      format_inventory(classes, "armhf"),
+      testing::AllOf(HasSubstr("all:\n  vars: {bess_architecture: armhf}\n  children:\n"),
+                     HasSubstr("    class_22:\n      vars:\n        bess_class: \"22\"\n"
+                               "        bess_expected_student: \"0a0b0c0d\"\n"
+                               "        bess_package: \"{{ inventory_dir }}/22/"
+                               "bess-edge_1.g1.22_{{ bess_architecture }}.deb\"\n"
+                               "      hosts:\n"
+                               "        \"site-184\": {bess_expected_eur_per_day: 3.2500}\n"),
+                     testing::EndsWith("    rollout_1:\n      hosts:\n        \"site-184\":\n"
+                                       "    rollout_10:\n      hosts:\n        \"site-2\":\n"
+                                       "    rollout_100:\n      hosts: {}\n")));
 }
 
 TEST_F(ClassPackages, SharesAreAHundredthATenthAndTheRest) {

@@ -12,7 +12,6 @@
 namespace bess {
 namespace {
 
-using testing::AllOf;
 using testing::HasSubstr;
 
 class Collected : public testing::Test {
@@ -89,8 +88,9 @@ TEST_F(Collected, ASiteEarnsByItsCapacityWhatItsClassDoes) {
   EXPECT_DOUBLE_EQ(sites[0].profit(), 11);
   EXPECT_DOUBLE_EQ(sites[0].eur_per_day(), 0.088);
   EXPECT_EQ(sites[0].header, "tasks/000/000001/student_weights.h");
-  EXPECT_THAT(sites_csv(sites), AllOf(HasSubstr("\na,north,c,4000,8000,4,2,11.0000,0.0880,tasks/"),
-                                      HasSubstr("\nb,,d,1,1,0,0,,,\n")));
+  EXPECT_THAT(sites_csv(sites),
+              testing::AllOf(HasSubstr("\na,north,c,4000,8000,4,2,11.0000,0.0880,tasks/"),
+                             HasSubstr("\nb,,d,1,1,0,0,,,\n")));
 }
 
 }  // namespace

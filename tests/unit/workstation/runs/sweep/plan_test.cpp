@@ -16,7 +16,6 @@ namespace bess {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::SizeIs;
 
@@ -49,14 +48,14 @@ TEST_F(SweepPlans, EveryCombinationOfTheGridForEverySeed) {
   request_.seeds = 2;
   EXPECT_THAT(settings(plan("[[list]]\n\"distil.epochs\" = 60\n[[list]]\n\"distil.epochs\" = 70\n"
                             "[grid]\n\"distil.fidelity\" = [1, 2.5]\n")),
-              ElementsAre("seed 1, distil.epochs 60, distil.fidelity 1",
-                          "seed 1, distil.epochs 60, distil.fidelity 2.5",
-                          "seed 1, distil.epochs 70, distil.fidelity 1",
-                          "seed 1, distil.epochs 70, distil.fidelity 2.5",
-                          "seed 2, distil.epochs 60, distil.fidelity 1",
-                          "seed 2, distil.epochs 60, distil.fidelity 2.5",
-                          "seed 2, distil.epochs 70, distil.fidelity 1",
-                          "seed 2, distil.epochs 70, distil.fidelity 2.5"));
+              testing::ElementsAre("seed 1, distil.epochs 60, distil.fidelity 1",
+                                   "seed 1, distil.epochs 60, distil.fidelity 2.5",
+                                   "seed 1, distil.epochs 70, distil.fidelity 1",
+                                   "seed 1, distil.epochs 70, distil.fidelity 2.5",
+                                   "seed 2, distil.epochs 60, distil.fidelity 1",
+                                   "seed 2, distil.epochs 60, distil.fidelity 2.5",
+                                   "seed 2, distil.epochs 70, distil.fidelity 1",
+                                   "seed 2, distil.epochs 70, distil.fidelity 2.5"));
 }
 
 TEST_F(SweepPlans, ASetOfTheCommandLineIsAnAxisOfTheGrid) {

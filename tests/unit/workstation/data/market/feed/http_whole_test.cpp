@@ -15,8 +15,6 @@
 namespace bess {
 namespace {
 
-using testing::HasSubstr;
-
 /// A proxy with HTTP/2 over TLS to its clients and HTTP/1.1 to the server.
 class Http2Front {
  public:
@@ -161,7 +159,7 @@ TEST(HttpCompleteness, ByHttp2) {
   }
   ServedAnswer said;
   const TestServer server([&said](TestConnection& connection, const std::string& request) {
-    EXPECT_THAT(request, HasSubstr("Via: 2 ")) << "not asked by HTTP/2";
+    EXPECT_THAT(request, testing::HasSubstr("Via: 2 ")) << "not asked by HTTP/2";
     return said.answer(connection, request);
   });
   const Http2Front front(server.port());

@@ -14,8 +14,6 @@
 namespace bess {
 namespace {
 
-using testing::HasSubstr;
-
 constexpr std::int64_t k2024September6At1656Utc_s = 1'725'641'760;
 
 TEST(MarketCsv, PortalMinutesWithByteOrderMarkAndNulls) {
@@ -145,7 +143,7 @@ TEST(PlainText, MessagesStayOnOneLineAndQuiet) {
   const std::string text = user_error_of([] {
     (void)parse_market_text("datetime;imbalanceprice\n2025-01-01T00:00:00Z;\x1b[31m\n", "f");
   });
-  EXPECT_THAT(text, testing::Not(HasSubstr("\x1b")));
+  EXPECT_THAT(text, testing::Not(testing::HasSubstr("\x1b")));
 }
 
 TEST(MarketCsv, AlphaPrimeIsNotAlpha) {
