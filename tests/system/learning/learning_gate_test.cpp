@@ -30,31 +30,6 @@ PairedDifference lead(const char* over, const Evaluation& teacher, const Evaluat
   return lead;
 }
 
-/// Stopped after the first validation: the result is the start.
-TEST(LearningGate, BeforeItsFirstStepTheTeacherIsTheProgramOnEveryDay) {
-  set_market_time_zone();
-  const RunConfig config = load_run_config("");
-  const MarketSteps market = make_market_steps(read_yardstick(), config.market);
-  const std::size_t looks = market.days_of(Split::kValidation).size();
-  const auto interrupted = [&, asked = std::size_t{0}]() mutable { return asked++ >= looks; };
-  const TrainResult beginning = train_teacher(market, config.battery, config.train, interrupted);
-  ASSERT_EQ(beginning.curve.size(), 1U);
-  ASSERT_EQ(beginning.best_step, 0);
-  ASSERT_TRUE(beginning.teacher.is_residual());
-  TeacherPolicy teacher(beginning.teacher);
-  StochasticProgramPolicy program(market, market.days_of(Split::kTrain), config.battery);
-  const EvaluationOptions options{config.battery, config.initial_soc_frac, true};
-  std::vector<StepRecord> taught, reported;
-  evaluate(market, market.days, teacher, options, &taught);
-  evaluate(market, market.days, program, options, &reported);
-  ASSERT_GT(taught.size(), 80'000U);
-  ASSERT_EQ(taught.size(), reported.size());
-  for (std::size_t i = 0; i < taught.size(); ++i) {
-    ASSERT_EQ(taught[i].action, reported[i].action) << i;
-    ASSERT_EQ(taught[i].soc_frac, reported[i].soc_frac) << i;
-  }
-}
-
 TEST(LearningGate, TheTeacherIsAboveTheRuleAndLevelWithTabularAndTheProgram) {
   set_market_time_zone();
   const RunConfig config = load_run_config("");

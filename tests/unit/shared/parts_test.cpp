@@ -28,20 +28,6 @@ TEST(Argmax, TiesGoToTheLowestAction) {
   }
 }
 
-TEST(Argmax, PowerAndNameOfEachAction) {
-  EXPECT_EQ(power_sign(Action::kDischarge), -1);
-  EXPECT_EQ(power_sign(Action::kIdle), 0);
-  EXPECT_EQ(power_sign(Action::kCharge), 1);
-  EXPECT_EQ(action_name(Action::kCharge), "charge");
-}
-
-TEST(Crc32, CheckValueOfTheStandard) {
-  Crc32 crc;
-  EXPECT_EQ(crc.value(), 0u);
-  crc.add_bytes("123456789", 9);
-  EXPECT_EQ(crc.value(), 0xCBF43926u);
-}
-
 TEST(Crc32, IntegersAreTheirLittleEndianBytes) {
   Crc32 integers;
   integers.add_integer(std::int32_t{-2});

@@ -59,14 +59,6 @@ class FetchFromSimulatedAuction : public TrainCommands {
   }
 };
 
-TEST_F(FetchFromSimulatedAuction, BringsTheFilesPrices) {
-  const Result result = fetch();
-  ASSERT_EQ(result.exit_code, 0) << result.output;
-  EXPECT_EQ(got().start_utc_s, two_days().start_utc_s);
-  EXPECT_EQ(got().eur_per_mwh, two_days().eur_per_mwh);
-  EXPECT_EQ(got().resolution_min, two_days().resolution_min);
-}
-
 TEST_F(FetchFromSimulatedAuction, RefusesWhatFaultsLeaveOfADay) {
   const std::map<std::string, std::string> refused{
       {"late", "2025-03-28"},        {"missing", "2025-03-28"},

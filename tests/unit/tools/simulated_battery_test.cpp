@@ -142,17 +142,6 @@ TEST(SimulatedBattery, IntegratesTheSameInOneStepAndInMany) {
   EXPECT_NEAR(fine.soc_frac(), coarse.soc_frac(), 1e-9);
 }
 
-TEST(SimulatedBattery, OnlyWhatFitsIsExchangedAtTheBounds) {
-  SimulatedBattery battery(kHouse, 0.95, kStartNs);
-  battery.start_dispatch(4'000, 1.0, 100'000);
-  battery.advance(after_s(7'200));
-  EXPECT_DOUBLE_EQ(battery.soc_frac(), 1.0);
-  EXPECT_EQ(battery.power_w(), 0);
-  double energy_wh = 0;
-  for (const MinuteRecord& m : battery.record()) energy_wh += m.energy_wh;
-  EXPECT_NEAR(energy_wh, 0.05 * 8'000 / std::sqrt(0.9), 1e-9);
-}
-
 TEST(SimulatedBattery, DispatchExpiresExactlyAndThenRests) {
   SimulatedBattery battery(kHouse, 0.5, kStartNs);
   battery.start_dispatch(-4'000, 0.1, 300);

@@ -14,12 +14,5 @@ TEST(ChildProcess, ASignalToAnEndedChildReachesNoOtherProcess) {
   EXPECT_FALSE(child.signal(0));
 }
 
-TEST(ChildProcess, RunsUntilItIsSignalled) {
-  ChildProcess child({"/bin/sleep", "60"});
-  EXPECT_FALSE(child.has_ended());
-  EXPECT_TRUE(child.signal(SIGTERM));
-  EXPECT_EQ(child.wait(), 128 + SIGTERM);
-}
-
 }  // namespace
 }  // namespace bess

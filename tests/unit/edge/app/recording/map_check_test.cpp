@@ -126,13 +126,6 @@ TEST_F(MapCheckTest, ARightMapHasNoFindings) {
   EXPECT_EQ(points[1].answers, 540);
 }
 
-TEST_F(MapCheckTest, AWrongSignShowsInTheStateOfCharge) {
-  load();
-  drive(1, -1);
-  EXPECT_EQ(named(), "battery_power");
-  EXPECT_THAT(findings(), Names("sign"));
-}
-
 TEST_F(MapCheckTest, AnOrderOfTheWrongSignIsAnotherFinding) {
   load("address = 11, type = \"s16\"", "address = 11, type = \"s16\", sign = -1");
   drive();
@@ -140,25 +133,24 @@ TEST_F(MapCheckTest, AnOrderOfTheWrongSignIsAnotherFinding) {
   EXPECT_EQ(finding("battery_power"), "");
 }
 
-TEST_F(MapCheckTest, AScaleOfThePowerWithinItsRangeShows) {
-  load("type = \"s16\"", "type = \"s16\", scale_divisor = 10");
-  drive();
-  EXPECT_EQ(named(), "battery_power");
-  EXPECT_THAT(findings(), Names("10 scale soc capacity"));
-}
-
-TEST_F(MapCheckTest, AScaleOfTheStateOfChargeWithinItsRangeShows) {
-  load("scale = 10,", "scale = 1,");
-  drive();
-  EXPECT_EQ(named(), "soc");
-  EXPECT_THAT(findings(), Names("10th scale capacity"));
-}
-
-TEST_F(MapCheckTest, AFrozenStateOfChargeShows) {
-  load();
-  drive(0);
-  EXPECT_EQ(named(), "soc");
-  EXPECT_THAT(findings(), Names("5978 Wh"));
+TEST_F(MapCheckTest, AWrongMapOrDeviceIsNamedByItsPoint) {
+  struct Case {
+    const char *from, *to;
+    const char *named, *codes;
+    double gain = 1;
+    int power_sign = 1;
+  };
+  for (const Case& c : {Case{"", "", "battery_power", "sign", 1, -1},
+                        Case{"type = \"s16\"", "type = \"s16\", scale_divisor = 10",
+                             "battery_power", "10 scale soc capacity"},
+                        Case{"scale = 10,", "scale = 1,", "soc", "10th scale capacity"},
+                        Case{"", "", "soc", "5978 Wh", 0}}) {
+    SCOPED_TRACE(c.codes);
+    load(c.from, c.to);
+    drive(c.gain, c.power_sign);
+    EXPECT_EQ(named(), c.named);
+    EXPECT_THAT(findings(), Names(c.codes));
+  }
 }
 
 TEST_F(MapCheckTest, ValuesOutsideTheirRangeAreNamedWithWhatWouldFit) {

@@ -198,28 +198,5 @@ TEST(ProgramResidual, LearnsWhatTheProgramHasWrong) {
 
 // ---- Training --------------------------------------------------------------------------------
 
-TEST(ProgramResidual, ValidationHasTheProgramAsItsFirstCandidate) {
-  TrainOptions options;
-  options.method = Method::kC51;
-  options.residual = true;
-  options.batch_size = 96;
-  options.steps = 60;
-  options.validate_every = 30;
-  const auto interrupted = [] { return false; };
-  const TrainResult result = train_teacher(market(), {}, options, interrupted);
-  options.method = Method::kSdp;
-  const TrainResult program = train_teacher(market(), {}, options, interrupted);
-  ASSERT_EQ(result.curve.size(), 3U);
-  EXPECT_EQ(result.curve[0].step, 0);
-  EXPECT_EQ(result.curve[0].validation_eur_per_day_per_mwh,
-            program.best_validation_eur_per_day_per_mwh);
-  EXPECT_GE(result.best_validation_eur_per_day_per_mwh,
-            program.best_validation_eur_per_day_per_mwh);
-  for (const CurvePoint& point : result.curve) EXPECT_LT(point.edge_mass_frac, 5e-3) << point.step;
-  const Support& support = result.teacher.support;
-  EXPECT_EQ(support.v_min, -support.v_max);
-  EXPECT_EQ(support.count, options.atoms);
-}
-
 }  // namespace
 }  // namespace bess
