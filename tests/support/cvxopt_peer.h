@@ -47,25 +47,15 @@ class CvxoptPeer {
     }
   }
 
-  /// One solution per program; nothing if cvxopt is missing.
-  [[nodiscard]] std::optional<std::vector<Eigen::VectorXd>> solve() const {
-    if (!run(folder_.file("answers"), {})) return {};
-    std::ifstream file(folder_.file("answers"), std::ios::binary);
-    std::vector<Eigen::VectorXd> answers;
-    for (const TestProgram& program : programs_) {
-      Eigen::VectorXd& x = answers.emplace_back(program.g.size());
-      file.read(reinterpret_cast<char*>(x.data()),
-                static_cast<std::streamsize>(sizeof(double)) * x.size());
-    }
-    if (!file) return {};
-    return answers;
-  }
-
-  /// Median CPU microseconds of each program; nothing if cvxopt is missing.
+  /// Median CPU microseconds of each program; nothing if cvxopt is missing; throws when it fails.
   [[nodiscard]] std::optional<std::vector<double>> median_us(int repetitions) const {
-    const std::optional<std::string> printed = run("--time", std::to_string(repetitions));
-    if (!printed) return {};
-    std::istringstream lines(*printed);
+    ChildProcess peer({"/usr/bin/python3", BESS_SOURCE_DIR "/tests/support/qp_cvxopt.py",
+                       folder_.file("programs"), std::to_string(repetitions)});
+    const std::string printed = peer.read_all();
+    const int code = peer.wait();
+    if (code == kMissing) return {};
+    if (code != 0) throw std::runtime_error(printed);
+    std::istringstream lines(printed);
     std::vector<double> times;
     for (double us = 0; lines >> us;) times.push_back(us);
     if (times.size() != programs_.size()) return {};
@@ -73,21 +63,6 @@ class CvxoptPeer {
   }
 
  private:
-  /// Output of the script; throws when it fails.
-  [[nodiscard]] std::optional<std::string> run(const std::string& what,
-                                               const std::string& count) const {
-    std::vector<std::string> words{"/usr/bin/python3",
-                                   BESS_SOURCE_DIR "/tests/support/qp_cvxopt.py",
-                                   folder_.file("programs"), what};
-    if (!count.empty()) words.push_back(count);
-    ChildProcess peer(words);
-    const std::string printed = peer.read_all();
-    const int code = peer.wait();
-    if (code == kMissing) return {};
-    if (code != 0) throw std::runtime_error(printed);
-    return printed;
-  }
-
   static constexpr int kMissing = 77;  ///< qp_cvxopt.py's exit code without cvxopt
   const std::vector<TestProgram>& programs_;
   TemporaryFolder folder_;

@@ -59,6 +59,7 @@ struct FakeBattery {
     m.order_power_w = static_cast<std::int32_t>(physics.commanded_power_w());
     if (inverted) m.power_w = -m.power_w;
     m.power_w += offset_w;
+    if (changed) changed(m);
     clock.now_ns += read_takes_ns;
     return Status::kOk;
   }
@@ -93,8 +94,9 @@ struct FakeBattery {
   bool is_implausible = false;  ///< its readings; receives the orders
   bool alarm = false;
   bool off_grid = false;
-  std::int32_t offset_w = 0;  ///< offset of its meter
-  bool inverted = false;      ///< its meter has the wrong sign
+  std::int32_t offset_w = 0;                         ///< offset of its meter
+  bool inverted = false;                             ///< its meter has the wrong sign
+  std::function<void(BatteryMeasurement&)> changed;  ///< what it shows otherwise
   bool refuses_orders = false;
   int failing_releases = 0;  ///< number of next releases that fail
   std::int64_t read_takes_ns = 0;

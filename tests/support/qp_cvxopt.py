@@ -1,12 +1,10 @@
 # Quadratic programs through cvxopt, an independent interior-point solver.
-#   /usr/bin/python3 qp_cvxopt.py PROGRAMS ANSWERS      the solutions, as accurate as it gets them
-#   /usr/bin/python3 qp_cvxopt.py PROGRAMS --time N     median CPU microseconds of N solutions of
-#                                                       each, on one thread, at cvxopt's own
-#                                                       tolerances, matrices sparse or dense: the
-#                                                       faster
+#   /usr/bin/python3 qp_cvxopt.py PROGRAMS N     median CPU microseconds of N solutions of each, on
+#                                                one thread, at cvxopt's own tolerances, matrices
+#                                                sparse or dense: the faster
 # min 1/2 |x - g|^2, rows a'x >= b. PROGRAMS is binary, numbers of this machine: how many programs;
 # each: variables, rows, terms (all 64-bit integers); g; the terms' rows, their columns (integers),
-# their factors; bounds (all else double). ANSWERS: doubles.
+# their factors; bounds (all else double).
 import array
 import os
 import statistics
@@ -18,9 +16,6 @@ try:
     from cvxopt import matrix, solvers, spmatrix
 except ImportError:
     sys.exit(77)
-
-ACCURATE = {"show_progress": False, "abstol": 1e-13, "reltol": 1e-13, "feastol": 1e-11,
-            "maxiters": 200}
 
 
 def read(file, kind, count):
@@ -49,16 +44,11 @@ def seconds_of(problem):
 def main():
     with open(sys.argv[1], "rb") as file:
         problems = [read_program(file) for _ in range(read(file, "q", 1)[0])]
-    if sys.argv[2] == "--time":
-        for problem in problems:
-            dense = [matrix(part) for part in problem]
-            medians = [statistics.median(seconds_of(p) for _ in range(int(sys.argv[3])))
-                       for p in (problem, dense)]
-            print(1e6 * min(medians))
-        return
-    with open(sys.argv[2], "wb") as file:
-        for problem in problems:
-            array.array("d", solvers.qp(*problem, options=ACCURATE)["x"]).tofile(file)
+    for problem in problems:
+        dense = [matrix(part) for part in problem]
+        medians = [statistics.median(seconds_of(p) for _ in range(int(sys.argv[2])))
+                   for p in (problem, dense)]
+        print(1e6 * min(medians))
 
 
 main()

@@ -98,20 +98,14 @@ TEST(Commission, RefusesMorePowerThanOrderedAndEndsItImmediately) {
 }
 
 TEST(Commission, TheOtherDirectionIsLookedAtAsWell) {
-  struct OneWay : FakeBattery {
-    using FakeBattery::FakeBattery;
-    Status read(BatteryMeasurement& m) {
-      const Status status = FakeBattery::read(m);
-      if (m.power_w < 0) m.power_w = -m.power_w;  // a map that reads a magnitude
-      return status;
-    }
+  CommissionSite site;
+  site.battery.changed = [](BatteryMeasurement& m) {
+    if (m.power_w < 0) m.power_w = -m.power_w;  // a map that reads a magnitude
   };
-  FakeClock clock;
-  OneWay battery(clock, 0.3);
-  const CommissionResult result = SignCheck<OneWay, FakeClock>({}, battery, clock).run();
+  const CommissionResult result = site.commission();
   EXPECT_EQ(result.verdict, CommissionVerdict::kWrongSign);
   EXPECT_EQ(result.ordered_power_w, -500);
-  EXPECT_FALSE(battery.physics.dispatch_active());
+  EXPECT_FALSE(site.battery.physics.dispatch_active());
 }
 
 TEST(Commission, RefusesLessThanItsMapAllowsAndSaysWhatToSet) {
@@ -202,20 +196,13 @@ TEST(Commission, ABatteryThatHoldsBackIsNotSlow) {
 }
 
 TEST(Commission, AnAlarmDuringTheCheckEndsIt) {
-  struct Alarming : FakeBattery {
-    using FakeBattery::FakeBattery;
-    Status read(BatteryMeasurement& m) {
-      const Status status = FakeBattery::read(m);
-      m.alarm = physics.power_w() != 0;
-      return status;
-    }
+  CommissionSite site;
+  site.battery.changed = [&](BatteryMeasurement& m) {
+    m.alarm = site.battery.physics.power_w() != 0;
   };
-  FakeClock clock;
-  Alarming battery(clock, 0.3);
-  const CommissionResult result = SignCheck<Alarming, FakeClock>({}, battery, clock).run();
-  EXPECT_EQ(result.verdict, CommissionVerdict::kAlarm);
-  EXPECT_EQ(battery.releases, 1);
-  EXPECT_EQ(battery.orders.size(), 2U);
+  EXPECT_EQ(site.commission().verdict, CommissionVerdict::kAlarm);
+  EXPECT_EQ(site.battery.releases, 1);
+  EXPECT_EQ(site.battery.orders.size(), 2U);
 }
 
 // --- the meter -----------------------------------------------------------------------------------

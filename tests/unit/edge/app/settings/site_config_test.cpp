@@ -119,14 +119,11 @@ TEST(SiteConfig, AMetersMapDrivesNoBattery) {
 
 TEST(DurationText, IsAWholeNumberWithItsUnit) {
   std::int64_t seconds = 0;
-  EXPECT_TRUE(parse_duration("90s", seconds));
-  EXPECT_EQ(seconds, 90);
-  EXPECT_TRUE(parse_duration("15m", seconds));
-  EXPECT_EQ(seconds, 900);
-  EXPECT_TRUE(parse_duration("168h", seconds));
-  EXPECT_EQ(seconds, 604'800);
-  EXPECT_TRUE(parse_duration("1d12h", seconds));
-  EXPECT_EQ(seconds, 129'600);
+  for (const auto& [text, is_s] : {std::pair{"90s", 90}, std::pair{"15m", 900},
+                                   std::pair{"168h", 604'800}, std::pair{"1d12h", 129'600}}) {
+    EXPECT_TRUE(parse_duration(text, seconds)) << text;
+    EXPECT_EQ(seconds, is_s) << text;
+  }
   for (const char* const text : {"", "h", "15", "0m", "-1h", "1.5h", "169h", "7d1s", "1h30", "1w",
                                  "1h ", "99999999999999999999s"}) {
     EXPECT_FALSE(parse_duration(text, seconds)) << text;

@@ -6,9 +6,7 @@
 #include <cmath>
 
 #include "tests/support/count_allocations.h"
-#include "tests/support/cvxopt_peer.h"
 #include "tests/support/random_programs.h"
-#include "tests/support/thorough.h"
 
 namespace bess {
 namespace {
@@ -117,29 +115,6 @@ TEST(QuadraticProgram, UnitsDoNotMatter) {
       ASSERT_EQ(of_longer_rows.solve(scaled.g), QuadraticOutcome::kSolved);
       EXPECT_LT((of_longer_rows.x() - x).norm(), 1e-9);
     }
-  }
-}
-
-/// Independent peer: an interior-point method. Of 1,000 programs five have 512 variables.
-TEST(QuadraticProgram, AgreesWithCvxopt) {
-  Random random(304);
-  std::vector<TestProgram> programs;
-  const int count = few_or_all(100, 1'000);
-  for (int round = 0; round < count; ++round) {
-    int variables = 2 + static_cast<int>(random.index(30));
-    if (round % 10 == 9) variables = 32 + static_cast<int>(random.index(97));
-    if (round % 200 == 98) variables = 512;
-    programs.push_back(random_program(kind_of(round / 3), variables, random));
-  }
-  const std::optional<std::vector<Vector>> peer = CvxoptPeer(programs).solve();
-  if (!peer) GTEST_SKIP() << "no cvxopt to compare with: tools/setup --test installs it";
-  for (std::size_t i = 0; i < programs.size(); ++i) {
-    SCOPED_TRACE(i);
-    QuadraticProgram solver = programs[i].solver();
-    ASSERT_EQ(solver.solve(programs[i].g), QuadraticOutcome::kSolved);
-    expect_optimal(programs[i], solver, 1e-8);
-    EXPECT_LT((solver.x() - (*peer)[i]).cwiseAbs().maxCoeff(), 1e-6)
-        << programs[i].g.size() << " variables, " << solver.steps() << " steps";
   }
 }
 

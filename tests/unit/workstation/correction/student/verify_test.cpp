@@ -104,24 +104,14 @@ Counts brute_force(Decide decide, LatticeState state, int low, int high) {
 /// A stored state must itself violate a property, or begin a pair that does.
 bool is_violation(const StudentNet& net, const LatticeState& state, const VerifyOptions& options) {
   const Action action = net.decide(state);
-  const PriceThresholds& thresholds = options.thresholds;
-  if (state.price_eur_per_mwh <= thresholds.low_eur_per_mwh && action != Action::kCharge) {
-    return true;
-  }
-  if (state.price_eur_per_mwh >= thresholds.high_eur_per_mwh && action != Action::kDischarge) {
-    return true;
-  }
-  LatticeState next = state;
-  if (state.price_eur_per_mwh < kLatticePriceMaxEurPerMwh) {
-    ++next.price_eur_per_mwh;
-    if (net.decide(next) > action) return true;
-  }
-  next = state;
-  if (state.soc_index < kSocCount - 1) {
-    ++next.soc_index;
-    if (net.decide(next) > action) return true;
-  }
-  return false;
+  const std::int16_t price = state.price_eur_per_mwh;
+  if (price <= options.thresholds.low_eur_per_mwh && action != Action::kCharge) return true;
+  if (price >= options.thresholds.high_eur_per_mwh && action != Action::kDischarge) return true;
+  LatticeState dearer = state, fuller = state;
+  ++dearer.price_eur_per_mwh;
+  ++fuller.soc_index;
+  return (price < kLatticePriceMaxEurPerMwh && net.decide(dearer) > action) ||
+         (state.soc_index < kSocCount - 1 && net.decide(fuller) > action);
 }
 
 TEST(Verify, CountsMatchTheDefinitions) {

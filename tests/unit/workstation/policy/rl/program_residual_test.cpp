@@ -196,7 +196,5 @@ TEST(ProgramResidual, LearnsWhatTheProgramHasWrong) {
   EXPECT_NE(TeacherPolicy(teacher).decide(*cheap, 0, 0.5), Action::kCharge);
 }
 
-// ---- Training --------------------------------------------------------------------------------
-
 }  // namespace
 }  // namespace bess
