@@ -33,17 +33,14 @@ struct MlpShape {
 /// The layers as views of a flat vector; Scalar is float or const float.
 template <typename Scalar>
 struct MlpView {
-  using Plain = std::remove_const_t<Scalar>;
   template <typename T>
   using Mapped = Eigen::Map<std::conditional_t<std::is_const_v<Scalar>, const T, T>>;
-  using DynamicMatrix = Eigen::Matrix<Plain, Eigen::Dynamic, Eigen::Dynamic>;
-  using DynamicVector = Eigen::Matrix<Plain, Eigen::Dynamic, 1>;
-  Mapped<DynamicMatrix> w1;
-  Mapped<DynamicVector> b1;
-  Mapped<DynamicMatrix> w2;
-  Mapped<DynamicVector> b2;
-  Mapped<DynamicMatrix> w3;
-  Mapped<DynamicVector> b3;
+  Mapped<Matrix> w1;
+  Mapped<Parameters> b1;
+  Mapped<Matrix> w2;
+  Mapped<Parameters> b2;
+  Mapped<Matrix> w3;
+  Mapped<Parameters> b3;
 
   MlpView(const MlpShape& s, Scalar* p)
       : w1(p, s.hidden1, s.inputs),
