@@ -65,22 +65,17 @@ std::int64_t end_of(const FetchWindow& window, std::int64_t now_utc_s) {
   return std::max(window.from_utc_s, std::min(window.until_utc_s, now_utc_s - now_utc_s % step_s));
 }
 
-/// A quarter-hour without a price is a gap; Elia publishes some minutes without one.
-std::set<std::int64_t> settled_times_of(const MarketRows& rows) {
-  std::set<std::int64_t> times;
-  for (const QuarterHour& row : rows.quarter_hours) {
-    if (is_published(row.price_eur_per_mwh)) times.insert(row.utc_s);
-  }
-  return times;
-}
-
-/// Times of the rows of the window's own kind.
-std::set<std::int64_t> times_of(const FetchWindow& window, const MarketRows& rows) {
+/// Times of the rows of the window's own kind. With `only_settled` a quarter-hour without a price is a
+/// gap; Elia publishes some minutes without one.
+std::set<std::int64_t> times_of(const FetchWindow& window, const MarketRows& rows,
+                                bool only_settled = false) {
   std::set<std::int64_t> times;
   if (holds_minutes(window.dataset)) {
     for (const MinuteRow& row : rows.minutes) times.insert(row.utc_s);
-  } else {
-    for (const QuarterHour& row : rows.quarter_hours) times.insert(row.utc_s);
+    return times;
+  }
+  for (const QuarterHour& row : rows.quarter_hours) {
+    if (!only_settled || is_published(row.price_eur_per_mwh)) times.insert(row.utc_s);
   }
   return times;
 }
@@ -206,14 +201,12 @@ class Pager {
     add_around({window_.from_utc_s, window_.until_utc_s}, download_.rows.rows);
     if (!ask_all()) return false;
     // The server has rows between those received: it sent them unsorted or incomplete.
-    if (lacks_rows_of_total()) {
+    if (download_.rows.lacks_rows_of_total()) {
       open_ = missing_in(window_, download_.rows.rows, request_.now_utc_s);
       return ask_all();
     }
     return true;
   }
-
-  [[nodiscard]] bool lacks_rows_of_total() const { return download_.rows.lacks_rows_of_total(); }
 
  private:
   bool ask_all() {
@@ -224,7 +217,7 @@ class Pager {
       part.from_utc_s = stretch.from_utc_s;
       part.until_utc_s = stretch.until_utc_s;
       if (part.from_utc_s >= end_of(window_, request_.now_utc_s)) continue;  // not over yet
-      if (download_.rows.total && !lacks_rows_of_total()) break;
+      if (download_.rows.total && !download_.rows.lacks_rows_of_total()) break;
       if (!ask(part)) return false;
     }
     return true;
@@ -318,8 +311,7 @@ std::vector<Gap> missing_in(const FetchWindow& window, const MarketRows& rows,
 
 std::vector<Gap> holes_in(const FetchWindow& window, const MarketRows& rows,
                           std::int64_t now_utc_s) {
-  if (holds_minutes(window.dataset)) return missing_in(window, rows, now_utc_s);
-  return gaps_between(settled_times_of(rows), window, now_utc_s);
+  return gaps_between(times_of(window, rows, true), window, now_utc_s);
 }
 
 std::optional<WindowDownload> download_window(const FetchRequest& request,
@@ -336,7 +328,7 @@ std::optional<WindowDownload> download_window(const FetchRequest& request,
   Pager pager(request, window, interrupted, *download);
   if (download->rows.total < download->rows.distinct)
     download->rows.total.reset();  // does not count these rows
-  if (download->rows.total && !pager.lacks_rows_of_total()) return download;
+  if (download->rows.total && !download->rows.lacks_rows_of_total()) return download;
   if (!pager.complete()) return std::nullopt;
   return download;
 }
