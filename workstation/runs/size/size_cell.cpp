@@ -280,8 +280,7 @@ SizeCells evaluate_cells(const SizePlan& plan, const RunConfig& base,
   for (const double power_w : plan.power_w) {
     for (const double capacity_wh : plan.capacity_wh) {
       for (const SizeContract& contract : plan.contracts) {
-        all.cells.push_back(size_cell(plan, contract, all.classes[*of], power_w, capacity_wh));
-        all.cells.back().class_index = *of++;
+        all.cells.push_back(size_cell(plan, contract, all.classes[*of++], power_w, capacity_wh));
       }
     }
   }
@@ -295,7 +294,6 @@ SizeCell size_cell(const SizePlan& plan, const SizeContract& contract, const Siz
   SizeCell cell{.power_w = power_w,
                 .capacity_wh = capacity_wh,
                 .contract = &contract,
-                .class_index = 0,
                 .profit_eur_per_day_per_mwh = of.traded.profit_eur_per_day_per_mwh(),
                 .margin_eur_per_year = mean_of(cash) * days_of_cell,
                 .fixed_eur_per_year = fixed_costs(contract, of, power_w),

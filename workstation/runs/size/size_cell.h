@@ -91,7 +91,6 @@ std::vector<MonthPeak> month_peaks(const std::vector<StepRecord>& steps, double 
 struct SizeCell {
   double power_w, capacity_wh;
   const SizeContract* contract;
-  std::size_t class_index;
   double profit_eur_per_day_per_mwh;  ///< net of wear, before share, fees and capacity tariff
   double margin_eur_per_year;         ///< after the share, before fees and capacity tariff
   double fixed_eur_per_year;          ///< fees and capacity tariff
