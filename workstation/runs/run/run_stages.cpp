@@ -106,52 +106,50 @@ void RunStages::report_line(const std::string& text) const {
 
 std::span<const RunStages::Stage> RunStages::stages() {
   using R = RunStages;
+  using enum StageCondition;
   static const Stage kRows[] = {
-      {"configuration", 1, "", StageCondition::kAlways, &R::make_configuration, {}, {kConfig}},
-      {"prices", 1, "", StageCondition::kOnBuiltInPrices, &R::make_prices, {}, {kSimulatedPrices}},
+      {"configuration", 1, "", &R::make_configuration, {}, {kConfig}},
+      {"prices", 1, "", &R::make_prices, {}, {kSimulatedPrices}, kOnBuiltInPrices},
       {kTeacherStage,
        2,
        "train or copy the teacher",
-       StageCondition::kAlways,
        &R::make_teacher,
        {},
        {kTeacher, kTrainingCurve, kCheckpoint}},
       {"plain student",
        3,
        "distil without correction, for comparison",
-       StageCondition::kUnlessLean,
        &R::make_plain_student,
        {kTeacher},
-       {kPlainStudent, kPlainViolations}},
+       {kPlainStudent, kPlainViolations},
+       kUnlessLean},
       {kProofStage,
        4,
        "correct while distilling, and prove",
-       StageCondition::kAlways,
        &R::make_corrected_student,
        {kTeacher},
        {kStudent, kUnprovedStudent, kUnprovedViolations, kDistilCurve, kProofRounds, kCheckpoints}},
-      {"header", 5, "export", StageCondition::kAlways, &R::make_header, {kStudent}, {kHeader}},
+      {"header", 5, "export", &R::make_header, {kStudent}, {kHeader}},
       {kEvaluationStage,
        6,
        "evaluate on test days and write the report",
-       StageCondition::kAlways,
        &R::make_evaluation,
        {kTeacher, kPlainStudent, kStudent},
        {kTable, kDays}},
       {kReportStage,
        6,
        "",
-       StageCondition::kUnlessLean,
        &R::make_report,
        {kTeacher, kPlainStudent, kPlainViolations, kStudent, kTrainingCurve, kDistilCurve, kDays},
-       {kSummary, kReport}},
+       {kSummary, kReport},
+       kUnlessLean},
       {kFailureStage,
        6,
        "report where the proof failed",
-       StageCondition::kAfterFailedProof,
        &R::make_failure_report,
        {kTeacher, kPlainStudent, kPlainViolations, kUnprovedStudent},
-       {kSummary, kReport}},
+       {kSummary, kReport},
+       kAfterFailedProof},
   };
   return kRows;
 }
@@ -243,17 +241,10 @@ void RunStages::finish() {
 }
 
 bool RunStages::is_due(const Stage& stage) const {
-  switch (stage.condition) {
-    case StageCondition::kAlways:
-      return true;
-    case StageCondition::kOnBuiltInPrices:
-      return record_.prices == kSimulatedPrices;
-    case StageCondition::kUnlessLean:
-      return !record_.is_lean();
-    case StageCondition::kAfterFailedProof:  // fail_the_proof() goes there
-      break;
-  }
-  return false;
+  using enum StageCondition;  // kAfterFailedProof: fail_the_proof() goes there
+  return stage.condition == kAlways ||
+         (stage.condition == kOnBuiltInPrices && record_.prices == kSimulatedPrices) ||
+         (stage.condition == kUnlessLean && !record_.is_lean());
 }
 
 void RunStages::report_again() {

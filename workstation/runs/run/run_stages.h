@@ -34,13 +34,13 @@ class RunStages {
   using Names = std::vector<std::string>;
   enum class StageCondition { kAlways, kOnBuiltInPrices, kUnlessLean, kAfterFailedProof };
   struct Stage {
-    std::string_view name;  ///< in run.json and times.json
-    int number;             ///< of the announced stages
-    const char* text;       ///< empty: not announced
-    StageCondition condition;
+    std::string_view name;       ///< in run.json and times.json
+    int number;                  ///< of the announced stages
+    const char* text;            ///< empty: not announced
     Names (RunStages::*make)();  ///< returns the written files
     Names inputs;                ///< kept while their marks are unchanged
     Names outputs;               ///< possible files, without figures and their tables
+    StageCondition condition = StageCondition::kAlways;
   };
   /// In order; used for resuming, progress, help and the list of files.
   static std::span<const Stage> stages();
