@@ -12,8 +12,8 @@
 
 namespace bess {
 
-/// All faults, one row each: constant, name, text for the help, opportunities, and whether it exists
-/// over TCP and RTU (default: both).
+/// All faults, one row each: constant, name, text for the help, opportunities, and whether it
+/// exists over TCP and RTU (default: both).
 #define BESS_BATTERY_FAULTS(ROW)                                                                 \
   ROW(kSilence, "silence", "no answer", kAny)                                                    \
   ROW(kLate, "late", "the answer comes --late-ms later", kAny)                                   \
