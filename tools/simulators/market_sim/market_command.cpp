@@ -65,6 +65,12 @@ void run_market(const MarketOptions& options) {
               static_cast<long long>(server.faults()));
 }
 
+/// A time of a fault.
+void add_seconds(ProgramCommand& command, const char* name, auto& value, const char* fault,
+                 const char* help) {
+  command.option(name, value, help).non_negative().needs(fault);
+}
+
 void add_day_ahead_options(ProgramCommand& command, MarketOptions& options) {
   constexpr const char *kFault = "--day-ahead-fault", *kFile = "--day-ahead";
   AuctionSettings& auction = options.auction;
@@ -86,15 +92,12 @@ void add_day_ahead_options(ProgramCommand& command, MarketOptions& options) {
       .range(1, 1'000)
       .with_default()
       .needs(kFault);
-  const auto seconds = [&command](const char* name, auto& value, const char* help) {
-    command.option(name, value, help).non_negative().needs(kFault);
-  };
-  seconds("--day-ahead-fault-from-s", auction.from_s,
-          "start of the day-ahead fault, simulated s after the start");
-  seconds("--day-ahead-fault-to-s", auction.to_s,
-          "end of the day-ahead fault, simulated s after the start");
-  seconds("--day-ahead-repair-s", auction.repair_s,
-          "delay until a faulty day is corrected, simulated s (default: never; late: 21600)");
+  add_seconds(command, "--day-ahead-fault-from-s", auction.from_s, kFault,
+              "start of the day-ahead fault, simulated s after the start");
+  add_seconds(command, "--day-ahead-fault-to-s", auction.to_s, kFault,
+              "end of the day-ahead fault, simulated s after the start");
+  add_seconds(command, "--day-ahead-repair-s", auction.repair_s, kFault,
+              "delay until a faulty day is corrected, simulated s (default: never; late: 21600)");
 }
 
 }  // namespace
@@ -141,16 +144,10 @@ void add_market_command(ProgramCommand& app) {
       .range(1, 1'000'000)
       .with_default()
       .needs("--fault");
-  command
-      .option("--fault-from-s", options->server.faults.from_s,
-              "start of the fault, simulated s after the start")
-      .non_negative()
-      .needs("--fault");
-  command
-      .option("--fault-to-s", options->server.faults.to_s,
-              "end of the fault, simulated s after the start")
-      .non_negative()
-      .needs("--fault");
+  add_seconds(command, "--fault-from-s", options->server.faults.from_s, "--fault",
+              "start of the fault, simulated s after the start");
+  add_seconds(command, "--fault-to-s", options->server.faults.to_s, "--fault",
+              "end of the fault, simulated s after the start");
   add_day_ahead_options(command, *options);
   ProgramOption certificate = command.option("--tls-cert", options->server.tls_certificate,
                                              "PEM certificate; enables HTTPS");
