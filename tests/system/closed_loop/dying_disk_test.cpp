@@ -2,7 +2,6 @@
 // Status, metrics and alarms never contradict the controller's last decision, and a trip stays
 // until a person clears it.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sched.h>
 #include <sys/mount.h>
 #include <sys/stat.h>

@@ -1,7 +1,6 @@
 // Commands of bess-edge as an operator types them: each exit code of the manual, and the
 // reports about a controller that has tripped or ended.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 
 #include "tests/support/edge_answer.h"

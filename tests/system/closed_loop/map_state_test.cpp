@@ -2,8 +2,6 @@
 // is seen, and registers that a model lacks are optional.
 #include <gtest/gtest.h>
 
-#include <bit>
-
 #include "tests/support/image_device.h"
 
 namespace bess {

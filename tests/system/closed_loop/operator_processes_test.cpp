@@ -1,7 +1,6 @@
 // Operators and the real programs: a hold that the running controller finds, a notifier that does
 // not disturb it.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <filesystem>

@@ -1,7 +1,6 @@
 // bess-edge with a student by outlook built in, on a market that publishes day-ahead prices: the
 // plan when they come in time, over a restart while they are missing, and the seal.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <fstream>
 

@@ -2,7 +2,6 @@
 // edge, against the workstation's level of the same minutes. Bit-identical, over gaps, restarts,
 // out-of-range prices and both clock changes.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <map>
 #include <memory>

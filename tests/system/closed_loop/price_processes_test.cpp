@@ -1,7 +1,6 @@
 // Real bess-edge with a real bess-prices that is killed, stopped, torn, full or of another version,
 // at random moments: control continues, and no price is used beyond its age limit.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 
 #include <cstdlib>

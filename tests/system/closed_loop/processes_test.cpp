@@ -1,7 +1,6 @@
 // Real programs together: bess-edge between bess-sim battery and bess-sim market, over Modbus TCP
 // and HTTP on free ports, in scaled time. The battery's own record is compared with the edge's log.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 

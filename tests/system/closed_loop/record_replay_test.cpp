@@ -1,7 +1,6 @@
 // Recording of a device that bess-edge drives, and its replay: the real programs decide the same
 // against the recording. The map fits the recording, and a map with a mistake does not.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>

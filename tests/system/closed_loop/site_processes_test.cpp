@@ -1,7 +1,6 @@
 // Site behind a meter with the real programs: bess-edge reads bess-sim's meter over Modbus, takes
 // limits from `bess-edge limit`, and bess-sim's own record gives the real power.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <algorithm>

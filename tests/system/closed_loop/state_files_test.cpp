@@ -2,7 +2,6 @@
 // a named seed over all files and all damage of a card. The sign check, a hold and the sent alerts
 // survive in another copy, each loss is a line, and only data that was written is accepted.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <filesystem>

@@ -2,7 +2,6 @@
 // power flows, readings agree, and the energy in the simulator's record is power times time,
 // computed by hand.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdio>

@@ -1,7 +1,6 @@
 // Real bess-edge against batteries and gateways of user reports (field_device.py, independent of
 // bess): orders, stop reasons, and energy. Each row of reports is a test, with three draws.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <csignal>
 #include <cstdio>

@@ -1,7 +1,6 @@
 // Real bess-edge against independent meters (pymodbus), one for each shipped map: --check must read
 // what the meter shows, in both directions.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "tests/support/peer_programs.h"
 #include "tests/support/simulated_site.h"

@@ -5,7 +5,6 @@
 //   0x0880 start | 32000 + W, below it charging (2) | 32000 + var (2) | mode 2 = SoC control |
 //   SoC limit, 0.4 % each: ceiling 100 % = 255 (none), floor 10 % = 25 | seconds (2) | 255 | PV 0
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <sstream>

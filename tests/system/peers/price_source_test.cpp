@@ -2,9 +2,7 @@
 // independent of bess). The right action of each minute is known: no order may contradict a price
 // that is fresh enough, and where a usual client gets its rows every control cycle must be traded.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <csignal>
 #include <cstdio>
 #include <map>
 

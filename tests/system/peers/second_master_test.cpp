@@ -2,7 +2,6 @@
 // another mode, 30 s after each tick, or every other tick: by the manufacturers' tables, by hand.
 // The edge finds it, and releases the battery.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <climits>
 

@@ -1,9 +1,6 @@
 // Small parts of the edge: built-in student, ticks, log lines.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <string>
-
 #include "edge/core/control/policy.h"
 #include "edge/core/loop/control_loop.h"
 #include "edge/records/log/log_text.h"

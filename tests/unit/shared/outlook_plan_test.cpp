@@ -4,9 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <vector>
-
 #include "shared/crc32.h"
 #include "shared/local_time.h"
 

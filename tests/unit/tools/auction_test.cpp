@@ -1,7 +1,6 @@
 // Simulated auction: the published day-ahead prices over time, in the format of energy-charts, and
 // the effect of each fault on a day.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <map>
 

@@ -2,7 +2,6 @@
 #include "tools/simulators/battery_sim/battery_command.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "shared/battery_keys.h"
 #include "tests/support/temporary_folder.h"

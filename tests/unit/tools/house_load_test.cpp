@@ -2,7 +2,6 @@
 #include "tools/simulators/battery_sim/house_load.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 

@@ -1,6 +1,5 @@
 // Simulated market: the published rows over time, in the format of Elia's API, and its file reader.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "edge/prices/fetch/price_json.h"
 #include "shared/scaled_clock.h"

@@ -1,10 +1,6 @@
 // Modbus driver of the edge against the simulated battery (libmodbus) on loopback: every command,
 // and the distinction of errors. Faults: modbus_faults_test.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <chrono>
-#include <thread>
 
 #include "edge/device/battery/modbus_battery.h"
 #include "tests/support/tokens.h"

@@ -2,7 +2,6 @@
 #include "tools/simulators/battery_sim/recorded_device.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "shared/host/user_error.h"
 #include "shared/scaled_clock.h"

@@ -3,7 +3,6 @@
 #include "shared/host/bus_recording.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cstring>
 

@@ -3,7 +3,6 @@
 #include "shared/host/http_client.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <chrono>
 

@@ -2,7 +2,6 @@
 #include "shared/host/json.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>

@@ -2,7 +2,6 @@
 #include "shared/host/toml_document.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <fmt/core.h>
 

@@ -2,7 +2,6 @@
 #include "tools/hil_runner/run/agreement.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "tests/support/tokens.h"
 #include "tools/hil_runner/wall/wall_run.h"

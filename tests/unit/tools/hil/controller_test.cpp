@@ -3,7 +3,6 @@
 #include "edge/app/program/controller.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <optional>
 

@@ -3,7 +3,6 @@
 #include "tools/hil_runner/run/agreement.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "tests/support/temporary_folder.h"
 #include "tools/hil_runner/run/run_scenario.h"

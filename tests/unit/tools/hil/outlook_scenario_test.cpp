@@ -1,7 +1,6 @@
 // Scenarios of day-ahead prices with a student by outlook: every fault of the auction is in one,
 // and the replanning rule finds wrong break-even prices.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <filesystem>
 #include <set>

@@ -3,7 +3,6 @@
 #include "tools/hil_runner/real/real_options.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <map>
 

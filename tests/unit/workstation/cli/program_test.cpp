@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 #include <signal.h>
 
-#include <algorithm>
 #include <cstring>
 #include <filesystem>
 

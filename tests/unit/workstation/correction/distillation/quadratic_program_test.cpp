@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "tests/support/count_allocations.h"
 #include "tests/support/random_programs.h"
