@@ -8,8 +8,8 @@ namespace bess {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Rows have unit length, so slacks and multipliers are distances. Tolerances on them are relative to
-// the size of the terms of a slack.
+// Rows have unit length, so slacks and multipliers are distances. Tolerances on them are relative
+// to the size of the terms of a slack.
 constexpr double kViolation = 1e-12;     ///< minimum violation of a row
 constexpr double kContradiction = 1e-9;  ///< minimum contradiction of rows; below, they just meet
 constexpr double kWeakly = 1e-9;         ///< smaller slacks and multipliers are 0 in the derivative
@@ -104,7 +104,8 @@ void QuadraticProgram::start(const Eigen::VectorXd& g) {
   measure();
 }
 
-/// Rows without common variables are independent: at the start each is added by itself, the most violated first. The more expensive steps over all active rows begin with these.
+/// Rows without common variables are independent: at the start each is added by itself, the most
+/// violated first. The more expensive steps over all active rows begin with these.
 void QuadraticProgram::take_in_disjoint_rows() {
   candidates_.clear();
   for (int row = 0; row < slacks_.size(); ++row) {
@@ -299,9 +300,9 @@ void QuadraticProgram::let_go(std::size_t position) {
   active_.pop_back();
 }
 
-/// The row is the sum of r times active ones, and no r is positive: row - sum = 0
-/// while the bounds sum to the violation. The active rows are independent, so the sum is unique:
-/// without any one of these rows the others can be satisfied.
+/// The row is the sum of r times active ones, and no r is positive: row - sum = 0 while the bounds
+/// sum to the violation. The active rows are independent, so the sum is unique: without any one of
+/// these rows the others can be satisfied.
 void QuadraticProgram::keep_clash(int row) {
   const double least =
       kFallingMultiplier * std::max(1.0, r_.head(factors_.active()).cwiseAbs().sum());

@@ -131,8 +131,8 @@ class OutlookProgram {
   std::shared_ptr<ValueCache> cache_;
 };
 
-/// Integer form of the program, used by workstation and edge (shared/outlook): half as many bins, each
-/// two adjacent bins of the chain. Throws UserError for values outside the integer ranges.
+/// Integer form of the program, used by workstation and edge (shared/outlook): half as many bins,
+/// each two adjacent bins of the chain. Throws UserError for values outside the integer ranges.
 OutlookModel outlook_integers(const OutlookProgram& program);
 
 class OutlookPolicy final : public Policy {

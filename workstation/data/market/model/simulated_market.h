@@ -66,8 +66,8 @@ MinuteSeries minutes_on_quarter_hours(const std::vector<QuarterHour>& quarter_ho
 DayAheadSeries simulate_day_ahead(const std::vector<QuarterHour>& quarter_hours,
                                   std::uint64_t seed);
 
-/// `period` starts at a local midnight. Needs the market's time zone (set_market_time_zone). The same
-/// seed gives the same market on every machine.
+/// `period` starts at a local midnight. Needs the market's time zone (set_market_time_zone). The
+/// same seed gives the same market on every machine.
 std::vector<QuarterHour> simulate_quarter_hours(const UtcSpan& period, std::uint64_t seed);
 
 }  // namespace bess
