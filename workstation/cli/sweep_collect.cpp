@@ -10,7 +10,6 @@
 #include "workstation/base/answer.h"
 #include "workstation/cli/commands.h"
 #include "workstation/runs/sweep/collected.h"
-#include "workstation/runs/sweep/engines.h"
 #include "workstation/runs/sweep/sweep_plan.h"
 
 namespace bess {

@@ -6,7 +6,6 @@
 
 #include "shared/host/text.h"
 #include "workstation/cli/commands.h"
-#include "workstation/runs/sweep/engines.h"
 #include "workstation/runs/sweep/sweep_plan.h"
 
 namespace bess {

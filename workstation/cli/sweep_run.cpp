@@ -9,7 +9,6 @@
 
 #include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
-#include "workstation/runs/sweep/engines.h"
 #include "workstation/runs/sweep/sweep_plan.h"
 
 namespace bess {

@@ -1,10 +1,9 @@
-#include "workstation/runs/sweep/engines.h"
-
 #include <unistd.h>
 
 #include <map>
 
 #include "shared/host/run_program.h"
+#include "workstation/runs/sweep/sweep_folder.h"
 
 namespace bess {
 namespace {

@@ -22,7 +22,6 @@
 #include "workstation/runs/run/run_backtest.h"
 #include "workstation/runs/run/run_record.h"
 #include "workstation/runs/run/run_report.h"
-#include "workstation/runs/sweep/engines.h"
 
 namespace bess {
 
