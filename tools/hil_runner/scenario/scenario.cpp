@@ -131,27 +131,13 @@ void read_battery_fault(TomlTable table, Scenario& scenario) {
   table.finish();
 }
 
-TomlTable sub_table(TomlTable& table, const std::string& key) {
-  return {table.table(key), table.file(), "[" + key + "]", table.error()};
-}
-
-template <typename Read>
-void each(TomlTable& table, std::string_view key, const Read& read) {
-  const TomlArray* const list = table.array(key);
-  for (std::size_t i = 0; list != nullptr && i < list->size(); ++i) {
-    read(TomlTable(&(*list)[i], table.file(), "[[" + std::string(key) + "]]", table.error()));
-  }
-}
-
 /// [battery_fault], or several [[battery_fault]].
-void read_battery_faults(TomlTable& table, Scenario& scenario) {
+template <typename Sub, typename Each>
+void read_battery_faults(TomlTable& table, Scenario& scenario, const Sub& sub, const Each& each) {
   const TomlValue* const node = table.node("battery_fault");
   if (node == nullptr) return;
-  if (node->as<TomlArray>() == nullptr) {
-    return read_battery_fault(sub_table(table, "battery_fault"), scenario);
-  }
-  each(table, "battery_fault",
-       [&](TomlTable one) { read_battery_fault(std::move(one), scenario); });
+  if (node->as<TomlArray>() == nullptr) return read_battery_fault(sub("battery_fault"), scenario);
+  each("battery_fault", [&](TomlTable one) { read_battery_fault(std::move(one), scenario); });
   const auto& faults = scenario.battery_faults;
   if (table.ok() && faults.size() > 1 && scenario.runs_wall) {
     table.fail("battery_fault",
@@ -259,6 +245,14 @@ void read_same_without(TomlTable table, Scenario& scenario) {
   }
 }
 
+template <typename Read>
+void each(TomlTable& table, std::string_view key, const Read& read) {
+  const TomlArray* const list = table.array(key);
+  for (std::size_t i = 0; list != nullptr && i < list->size(); ++i) {
+    read(TomlTable(&(*list)[i], table.file(), "[[" + std::string(key) + "]]", table.error()));
+  }
+}
+
 }  // namespace
 
 std::string map_path(const std::string& name, const fs::path& folder) {
@@ -290,7 +284,9 @@ Scenario read_scenario(const std::string& path) {
   scenario.path = path;
   const fs::path folder = fs::path(path).parent_path();
   TomlTable table(&document, path, "", error);
-  const auto sub = [&](const char* key) { return sub_table(table, key); };
+  const auto sub = [&](const char* key) {
+    return TomlTable(table.table(key), path, "[" + std::string(key) + "]", error);
+  };
   table.require("title");
   read_text(table, "title", scenario.title);
   table.boolean("witness", scenario.witness);
@@ -300,7 +296,8 @@ Scenario read_scenario(const std::string& path) {
   read_house(sub("house"), scenario);
   read_meter(sub("meter"), folder, scenario.meter);
   read_meter_fault(sub("meter_fault"), scenario);
-  read_battery_faults(table, scenario);
+  read_battery_faults(table, scenario, sub,
+                      [&](const char* key, const auto& read) { each(table, key, read); });
   read_price_fault(sub("price_fault"), scenario);
   read_day_ahead(sub("day_ahead"), folder, scenario);
   each(table, "event", [&](TomlTable event) { read_event(std::move(event), scenario); });
