@@ -132,8 +132,9 @@ void print_limit(const EdgeConfig& config) {
   if (!config.site.settings.has_outside_limits) return;
   OutsideLimit limit;
   bool is_set = false;
-  LimitFile(config.site.limit_file.c_str()).read(limit, is_set);
-  if (!is_set || limit.until_utc_s <= config.clock.now_utc_ns() / kNanosecondsPerSecond) return;
+  const Status status = LimitFile(config.site.limit_file.c_str()).read(limit, is_set);
+  const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
+  if (status != Status::kOk || !is_set || limit.until_utc_s <= now_utc_s) return;
   const auto power = [](std::int32_t power_w) {
     return power_w == kAnyPowerW ? std::string(kAnyPowerText) : std::to_string(power_w) + " W";
   };
