@@ -7,7 +7,6 @@
 #include "shared/local_time.h"
 #include "shared/utc_text.h"
 #include "workstation/correction/rules/ruled_policy.h"
-#include "workstation/correction/student/exported_policy.h"
 #include "workstation/correction/student/student_policy.h"
 #include "workstation/data/env/day_errors.h"
 #include "workstation/report/figures/html.h"

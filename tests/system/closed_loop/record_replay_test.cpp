@@ -197,11 +197,10 @@ TEST_F(RecordCommand, AnInterruptedRecordingIsWhole) {
   ChildProcess child(
       {edge_program(), "record", "--config", config_, "--for", "7d", "--out", path_});
   ASSERT_TRUE(catches(child.pid(), SIGINT));
-  const auto lines = [&] {
-    const std::string text = text_of_file(path_ + ".part");
-    return std::count(text.begin(), text.end(), '\n');
-  };
-  for (int ms = 0; ms < 60'000 && lines() < 100; ++ms) usleep(1'000);  // each point and more
+  for (int ms = 0; ms < 60'000; ++ms) {  // until each point and more is there
+    if (count_of(text_of_file(path_ + ".part"), "\n") >= 100) break;
+    usleep(1'000);
+  }
   child.signal(SIGINT);
   EXPECT_THAT(child.read_all(), HasSubstr(path_));
   EXPECT_EQ(child.wait(), 0);

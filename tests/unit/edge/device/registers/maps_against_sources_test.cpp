@@ -88,13 +88,12 @@ TEST(VictronInput, IsWhatTheBatteryTakesAndTheLoadOnTheOutput) {
   constexpr int kVebus = 228;
   int output_w = 800;
   MapUnderTest t(shipped_map("victron_ess3"));
-  const auto show = [&] {
+  t.device.before_request = [&] {
     t.device.set(23, {output_w / 10});
     const auto input_w = static_cast<std::int16_t>(t.device.holding[37]);
     t.device.set(842, {word(t.device.holding[2'902] == 3 ? input_w - output_w : 0), 62});
   };
   t.device.set(2'902, {0});  // as it reads on some systems
-  t.device.before_request = show;
   for (const int power_w : {0, -1'000, 2'000}) {
     ASSERT_EQ(t.order(power_w), Status::kOk) << power_w;
     EXPECT_EQ(t.reading().power_w, power_w);

@@ -13,8 +13,7 @@ namespace bess {
 namespace {
 
 double profit(const MarketSteps& market, bool carry_soc, double level_weight) {
-  StochasticProgramPolicy policy(market, market.days_of(Split::kTrain), {},
-                                 {.level_weight = level_weight});
+  StochasticProgramPolicy policy(market, market.days_of(Split::kTrain), {}, level_weight);
   return evaluate(market, market.days_of(Split::kValidation), policy,
                   {.battery = {}, .carry_soc = carry_soc})
       .profit_eur_per_day_per_mwh();
