@@ -49,7 +49,7 @@ class RunPlanning : public testing::Test {
 };
 
 TEST_F(RunPlanning, AnotherRunIsRefusedNamingEveryKeyAndBothValues) {
-  const std::string before = read_file(request_.out / "run.json");
+  const std::string before = read_file(fs::path(request_.out) / "run.json");
   RunRequest other = request_;
   other.common.seed = 6;
   other.common.config_path =
@@ -60,7 +60,7 @@ TEST_F(RunPlanning, AnotherRunIsRefusedNamingEveryKeyAndBothValues) {
                 AllOf(Names("seed 5 6 [battery] power_w 5000000 2500000 [distil] epochs 7 --out"),
                       Not(Names("threads"))));
   }
-  EXPECT_EQ(read_file(request_.out / "run.json"), before);
+  EXPECT_EQ(read_file(fs::path(request_.out) / "run.json"), before);
   EXPECT_EQ(std::distance(fs::directory_iterator(request_.out), {}), 1) << "something was written";
 }
 
@@ -127,7 +127,7 @@ TEST_F(RunPlanning, WhatIsNotGivenIsTheFolders) {
 TEST_F(RunPlanning, AnEditedConfigurationIsRefusedNamingKeyAndBothValues) {
   request_.resume = true;
   const RunPlan plan = plan_run(request_);
-  const fs::path file = request_.out / "config.toml";
+  const fs::path file = fs::path(request_.out) / "config.toml";
   const std::string written = format_run_config(plan.record.config(plan.folder));
   write_file(file, written);
   const RunRequest bare = resumed(request_.out);
@@ -151,7 +151,7 @@ TEST_F(RunPlanning, AnEditedConfigurationIsRefusedNamingKeyAndBothValues) {
 TEST_F(RunPlanning, AModelTrainedForOthersIsReported) {
   request_.resume = true;
   const RunPlan plan = plan_run(request_);
-  const fs::path model = request_.out / "student.json";
+  const fs::path model = fs::path(request_.out) / "student.json";
   save_student(model, compiled_student());
   RunConfig config = plan.record.config(plan.folder);
   const auto otherwise = [&] {
@@ -218,8 +218,8 @@ TEST_F(RunPlanning, PricesThatMovedAreTheSamePrices) {
 }
 
 TEST_F(RunPlanning, FilesOfARunWithoutItsRecordAreNotOverwritten) {
-  fs::remove(request_.out / "run.json");
-  write_file(request_.out / "teacher.bin", "somebody's");
+  fs::remove(fs::path(request_.out) / "run.json");
+  write_file(fs::path(request_.out) / "teacher.bin", "somebody's");
   for (const bool resume : {false, true}) {
     request_.resume = resume;
     EXPECT_THAT(refusal(request_), Names("teacher.bin run.json --out"));
@@ -228,7 +228,7 @@ TEST_F(RunPlanning, FilesOfARunWithoutItsRecordAreNotOverwritten) {
 
 TEST_F(RunPlanning, ARecordOfAnotherKindIsNamed) {
   for (const char* text : {"{", "{\"version\":\"0.1.0\",\"prices\":\"a.csv\"}", "[]"}) {
-    write_file(request_.out / "run.json", text);
+    write_file(fs::path(request_.out) / "run.json", text);
     EXPECT_THAT(refusal(request_), Names("run.json"));
   }
 }
