@@ -129,13 +129,13 @@ std::array<double, kQuarterHourCount> MeanByQuarterHour::smoothed(double sigma) 
   return mean;
 }
 
-std::vector<double> levels_around(double mean, double mean_square) {
-  constexpr int kLast = 4;      ///< five levels
+std::vector<double> levels_around(double mean, double mean_square, int count) {
   constexpr double kReach = 3;  ///< standard deviations
   const double deviation = std::sqrt(std::max(0.0, mean_square - mean * mean));
   std::vector<double> levels;
-  for (int i = 0; i <= kLast; ++i) {
-    levels.push_back(mean + (2.0 * i / kLast - 1) * kReach * std::max(1.0, deviation));
+  const int last = count - 1;
+  for (int i = 0; i <= last; ++i) {
+    levels.push_back(mean + (2.0 * i / last - 1) * kReach * std::max(1.0, deviation));
   }
   return levels;
 }

@@ -82,8 +82,11 @@ struct MeanByQuarterHour {
 
 // Price levels with values, and the present level between them.
 
-/// Evenly spaced within three standard deviations of the mean.
-std::vector<double> levels_around(double mean, double mean_square);
+inline constexpr int kLevelCount = 5;
+
+/// `count` of them, evenly spaced within three standard deviations of the mean. (As a constant of
+/// that function, the count would let the compiler round the last bit otherwise.)
+std::vector<double> levels_around(double mean, double mean_square, int count);
 
 DeviationChain::BinPosition between_levels(const std::vector<double>& levels, double level);
 

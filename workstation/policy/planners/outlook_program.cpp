@@ -193,7 +193,7 @@ void OutlookProgram::fit_levels(const MarketSteps& market, const std::vector<Mar
     squares += step.level_eur_per_mwh() * step.level_eur_per_mwh();
     count += 1;
   });
-  levels_ = levels_around(sum / count, squares / count);
+  levels_ = levels_around(sum / count, squares / count, kLevelCount);
 }
 
 void OutlookProgram::fit_chain(const MarketSteps& market, const std::vector<MarketDay>& days) {

@@ -172,7 +172,7 @@ void StochasticProgram::fit_usual(const MarketSteps& market, const std::vector<M
     row_age_[minute] = age_count[minute][1] > age_count[minute][0] ? 1 : 0;
   }
   usual_ = paid.smoothed(kHourSmoothing);
-  levels_ = levels_around(level_mean_, level_squares / all);
+  levels_ = levels_around(level_mean_, level_squares / all, kLevelCount);
 }
 
 void StochasticProgram::fit_chain(const MarketSteps& market, const std::vector<MarketDay>& days) {
