@@ -125,7 +125,7 @@ std::string rules_table(const Certificate& uncorrected, const Certificate& corre
     table.rows.push_back({fmt::format("{} \u2013 {}", after[d].name, after[d].text),
                           held_by(corrected.rules.rules[d - kPropertyCount], kind),
                           text_or_dash(is_bound, grouped(after[d].states)),
-                          percent_broken(before[d]),
+                          d < before.size() ? percent_broken(before[d]) : kNoValue,
                           text_or_dash(is_bound, grouped(after[d].violations))});
   }
   return format_table(table);

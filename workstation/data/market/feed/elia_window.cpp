@@ -65,8 +65,8 @@ std::int64_t end_of(const FetchWindow& window, std::int64_t now_utc_s) {
   return std::max(window.from_utc_s, std::min(window.until_utc_s, now_utc_s - now_utc_s % step_s));
 }
 
-/// Times of the rows of the window's own kind. With `only_settled` a quarter-hour without a price is
-/// a gap; Elia publishes some minutes without one.
+/// Times of the rows of the window's own kind. With `only_settled` a quarter-hour without a price
+/// is a gap; Elia publishes some minutes without one.
 std::set<std::int64_t> times_of(const FetchWindow& window, const MarketRows& rows,
                                 bool only_settled = false) {
   std::set<std::int64_t> times;

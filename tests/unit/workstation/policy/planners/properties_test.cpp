@@ -144,8 +144,8 @@ double energy_exchanged_mwh(const std::string& name, double price, double wear) 
 }
 
 /// At most the stored 0.4 * 8 MWh out, or 0.5 * 8 MWh in, once. At -50 EUR/MWh the 10 % loss of a
-/// full cycle is paid for: an optimum without wear burns it, correctly (evaluate_test). Wear above it
-/// ends the cycling.
+/// full cycle is paid for: an optimum without wear burns it, correctly (evaluate_test). Wear above
+/// it ends the cycling.
 TEST(Properties, AConstantPriceMovesEnergyOnceAtMost) {
   for (const char* name : {"rbc", "rbc-quartile", "rbc-tuned", "tabular", "mpc", "foresight"}) {
     EXPECT_LE(energy_exchanged_mwh(name, 80, 0), 4.3) << name;
