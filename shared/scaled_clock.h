@@ -47,6 +47,12 @@ struct ScaledClock {
   }
 };
 
+/// UTC of any clock with now_utc_ns(), in whole seconds since 1970.
+template <typename Clock>
+std::int64_t utc_seconds(Clock& clock) {
+  return clock.now_utc_ns() / kNanosecondsPerSecond;
+}
+
 /// Sleeps until a CLOCK_MONOTONIC instant; returns immediately if it has passed. True when the
 /// instant was reached, false when interrupted by a signal.
 inline bool sleep_until_monotonic(std::int64_t monotonic_ns) {

@@ -85,8 +85,7 @@ void print_orders(const EdgeConfig& config, const ModbusBattery& battery) {
 void print_training(const EdgeConfig& config) {
   const TrainingPeriod trained = student_training();
   std::printf("trained    %s\n", training_days_text(trained).c_str());
-  const auto age = training_age_text(
-      trained, local_date_text(config.clock.now_utc_ns() / kNanosecondsPerSecond).view());
+  const auto age = training_age_text(trained, local_date_text(utc_seconds(config.clock)).view());
   if (!age.empty()) {
     report(JournalLevel::kWarning, "note: trained until %s: retrain on newer prices", age.c_str());
   }
@@ -210,7 +209,7 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, const std::s
   }
   print_thresholds(config);
   print_transport(config);
-  const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
+  const std::int64_t now_utc_s = utc_seconds(config.clock);
   const Hold hold = read_newest_hold(state_file_paths(config, kHoldFileName)).hold;
   std::fputs(operator_note(config.control, hold, now_utc_s).c_str(), stdout);
   std::fflush(stdout);

@@ -228,7 +228,7 @@ int run_commission(const CommissionOptions& options, SettingsFile& settings) {
   if (!session.begin(config)) return 1;
   EdgeClock& clock = session.clock();
   CommissionSettings test = settings_of(config);
-  test.drives_further = may_drive_further(config.site, clock.now_utc_ns() / kNanosecondsPerSecond);
+  test.drives_further = may_drive_further(config.site, utc_seconds(clock));
   if (!options.yes) return ask_for_yes(config, test);
   static ModbusBattery battery(config.battery.link, config.battery.map,
                                config.clock);  // outlives a failed check
@@ -264,7 +264,7 @@ int run_commission(const CommissionOptions& options, SettingsFile& settings) {
     if (battery.has_optional(point)) result.present.push_back(point);
   }
   std::string error;
-  const std::int64_t utc_s = clock.now_utc_ns() / kNanosecondsPerSecond;
+  const std::int64_t utc_s = utc_seconds(clock);
   if (!write_commission_file(config, result, utc_s, error)) return failed(error);
   std::printf("passed     ordered %d W, measured %d W: the sign is right; stored in %s\n",
               result.ordered_power_w, result.measured_power_w, config.state.folder.c_str());

@@ -56,7 +56,7 @@ int run_earned(const EarnedOptions& options, SettingsFile& settings) {
   const EdgeConfig& config = settings.config;
   LogReader log;
   if (!open_log(config, log)) return 1;
-  const std::int32_t today = local_day_at(config.clock.now_utc_ns() / kNanosecondsPerSecond);
+  const std::int32_t today = local_day_at(utc_seconds(config.clock));
   Period period{today, today};
   if (!options.period.empty()) parse_period(options.period, today, period);
   std::string trouble;

@@ -168,7 +168,7 @@ int run_hold(const HoldOptions& options, SettingsFile& settings) {
     return 1;
   }
   set_market_time_zone();
-  const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
+  const std::int64_t now_utc_s = utc_seconds(config.clock);
   const Hold hold{.power_w = static_cast<std::int32_t>(power_w),
                   .until_utc_s = static_cast<std::uint32_t>(now_utc_s + options.for_s)};
   for (const FixedText<511>* const folder : {&config.state.folder, &config.state.run_folder}) {

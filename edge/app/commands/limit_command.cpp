@@ -67,8 +67,7 @@ int run_limit(const LimitOptions& options, SettingsFile& settings) {
     refuse("\"" + *text + "\" is not a power: use whole watts, 0 or more");
     return 2;
   }
-  const std::int64_t until_utc_s =
-      config.clock.now_utc_ns() / kNanosecondsPerSecond + options.for_s;
+  const std::int64_t until_utc_s = utc_seconds(config.clock) + options.for_s;
   const std::string until = utc_text(until_utc_s).c_str();
   if (!replace_file(path, charge + " " + discharge + " " + until + "\n")) {
     return refuse(std::string(path) + ": cannot be written: " + std::strerror(errno) +

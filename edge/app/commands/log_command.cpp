@@ -107,7 +107,7 @@ int run_log(const LogOptions& options, SettingsFile& settings) {
   const EdgeConfig& config = settings.config;
   LogReader log;
   if (!open_log(config, log)) return 1;
-  const LogSpan span = span_of(options, log, config.clock.now_utc_ns() / kNanosecondsPerSecond);
+  const LogSpan span = span_of(options, log, utc_seconds(config.clock));
   if (!options.at.empty() && span.last == 0) return failed("no control cycle at " + options.at);
   if (options.csv) {
     char header[kLogLineBytes];

@@ -103,7 +103,7 @@ void test_seal(Table& table) {
 }
 
 void test_clock(const EdgeConfig& config, const EdgeClock& clock, Table& table) {
-  const std::string now = utc_text(config.clock.now_utc_ns() / kNanosecondsPerSecond).c_str();
+  const std::string now = utc_text(utc_seconds(config.clock)).c_str();
   if (!config.clock.is_real_time()) return table.add("clock", Verdict::kNote, now + ", simulated");
   const bool is_set = clock.is_synchronised();
   table.add("clock", is_set,

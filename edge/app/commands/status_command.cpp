@@ -133,7 +133,7 @@ void print_limit(const EdgeConfig& config) {
   OutsideLimit limit;
   bool is_set = false;
   const Status status = LimitFile(config.site.limit_file.c_str()).read(limit, is_set);
-  const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
+  const std::int64_t now_utc_s = utc_seconds(config.clock);
   if (status != Status::kOk || !is_set || limit.until_utc_s <= now_utc_s) return;
   const auto power = [](std::int32_t power_w) {
     return power_w == kAnyPowerW ? std::string(kAnyPowerText) : std::to_string(power_w) + " W";
@@ -227,7 +227,7 @@ bool find_next(const EdgeConfig& config, NextDecision& next) {
   FileMessage ignored;
   CycleRecord newest;
   if (!log.open(config.log, ignored) || !log.read(log.newest_number(), newest)) return false;
-  const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
+  const std::int64_t now_utc_s = utc_seconds(config.clock);
   next = find_next_decision(newest, now_utc_s, config.control);
   return true;
 }
@@ -268,7 +268,7 @@ TrainingPeriod training_of(const RunIdentity& id) {
 
 /// Why the student should be retrained, or empty. Does not affect health.
 std::string retraining_note(const EdgeConfig& config, const RunIdentity& id) {
-  const auto today = local_date_text(config.clock.now_utc_ns() / kNanosecondsPerSecond);
+  const auto today = local_date_text(utc_seconds(config.clock));
   const auto age = training_age_text(training_of(id), today.view());
   return age.empty() ? "" : formatted("trained until %s: retrain on newer prices", age.c_str());
 }

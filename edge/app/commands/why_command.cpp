@@ -35,7 +35,7 @@ std::uint64_t find_cycle(const WhyOptions& options, const EdgeConfig& config, co
   if (log.newest_number() == 0) trouble = "the decision log is empty";
   if (options.at.empty() || !trouble.empty()) return log.newest_number();
   std::int64_t at_utc_s = 0;
-  const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
+  const std::int64_t now_utc_s = utc_seconds(config.clock);
   parse_moment(options.at, now_utc_s, at_utc_s);
   const std::uint64_t number = number_at(log, at_utc_s);
   CycleRecord oldest;

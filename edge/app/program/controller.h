@@ -141,7 +141,7 @@ class Controller {
         starting_level(config_, restored.before.price_level, price_server_status, world_);
     if (needs_level)
       world_.write_line(journal_level_of(level_report), level_start_text(level_report));
-    recall_cycles(world_, world_.clock().now_utc_ns() / kNanosecondsPerSecond, loop_);
+    recall_cycles(world_, utc_seconds(world_.clock()), loop_);
     loop_.take_over(take_over_of(restored.before, level_report.start.level), restored.trip);
     loop_.follow_outlook(world_.await_outlook(level_report.start.level.centi_eur_per_mwh()));
   }

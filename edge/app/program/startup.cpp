@@ -58,7 +58,7 @@ RestoredState restore_at_start(const EdgeConfig& config, const EventLog& log,
   }
   report(JournalLevel::kError,
          "state: %s: a trip may be lost, so there is no control until bess-edge clear --yes", what);
-  restored.trip = trip_without_state(restored, config.clock.now_utc_ns() / kNanosecondsPerSecond);
+  restored.trip = trip_without_state(restored, utc_seconds(config.clock));
   return restored;
 }
 

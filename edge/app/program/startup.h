@@ -85,7 +85,7 @@ ThresholdNote compare_thresholds(const PriceThresholds& guard, const PriceThresh
 template <typename World>
 LevelStartReport starting_level(const EdgeConfig& config, const PriceLevel& logged,
                                 Status price_server_status, World& world) {
-  const std::int64_t now_utc_s = world.clock().now_utc_ns() / kNanosecondsPerSecond;
+  const std::int64_t now_utc_s = utc_seconds(world.clock());
   LevelStartReport level_report{.hours_wanted = config.price.history.hours,
                                 .status = price_server_status};
   const auto fetch = [&]() -> PriceLevel {

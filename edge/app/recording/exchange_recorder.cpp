@@ -51,7 +51,7 @@ RecordingHead recording_head_of(const RegisterMap& map, const BatteryLinkSetting
                      .unit = link.unit >= 0 ? link.unit : map.unit,
                      .units = {},
                      .rtu = link.rtu,
-                     .begin_utc_s = clock.now_utc_ns() / kNanosecondsPerSecond,
+                     .begin_utc_s = utc_seconds(clock),
                      .time_scale = clock.scale};
   for (const UnitGroup& group : map.unit_groups) {
     head.units.emplace_back(group.name.view(), group.unit);
@@ -143,8 +143,7 @@ bool ExchangeRecorder::write_end() {
   char text[kEndBytesMax];
   TextBuffer line(text);
   line.add("{\"end\":\"%s\",\"exchanges\":%" PRId64 ",\"dropped\":%" PRId64 "}\n",
-           utc_text(clock_.now_utc_ns() / kNanosecondsPerSecond).c_str(), written_.load(),
-           dropped_.load());
+           utc_text(utc_seconds(clock_)).c_str(), written_.load(), dropped_.load());
   return write_line(line.view());
 }
 

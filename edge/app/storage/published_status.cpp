@@ -36,7 +36,7 @@ RunIdentity identity_of_run(const EdgeConfig& config) {
   identity.battery = battery_place(config.battery);
   identity.control = config.control.control;
   identity.pid = getpid();
-  identity.start_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
+  identity.start_utc_s = utc_seconds(config.clock);
   identity.wear = storage_wear_of(config.state.folder.c_str());
   identity.cadence_ms = kSecondsPerStep * 1'000 / config.clock.scale;
   return identity;

@@ -67,7 +67,7 @@ class BatteryMonitor {
   void check() {
     BatteryMeasurement measurement;
     Status status = site().needs_battery() ? battery_.read(measurement) : Status::kNotConnected;
-    observe(ReadingPurpose::kCheck, now_utc_s(), status, order_.response(measurement));
+    observe(ReadingPurpose::kCheck, utc_seconds(clock_), status, order_.response(measurement));
     bool is_read = status == Status::kOk;
     if (!settings_.control || !order_.exists() || mode_ != Mode::kRunning) return;
     const BatteryMeasurement& known = is_read ? measurement : measured_;
@@ -80,7 +80,7 @@ class BatteryMonitor {
     if (is_read && (measurement.order_replaced || has_ended)) return;
     // At the next reading, energy that flowed so far would be assigned to the next order.
     if (is_read)
-      observe(ReadingPurpose::kCut, now_utc_s(), Status::kOk, order_.response(measurement));
+      observe(ReadingPurpose::kCut, utc_seconds(clock_), Status::kOk, order_.response(measurement));
     cut(left);
   }
 
@@ -90,10 +90,6 @@ class BatteryMonitor {
   [[nodiscard]] std::int32_t order_cuts() const { return order_cuts_; }
 
  private:
-  [[nodiscard]] std::int64_t now_utc_s() const {
-    return clock_.now_utc_ns() / kNanosecondsPerSecond;
-  }
-
   [[nodiscard]] const Site& site() const { return parts_.template get<SitePart<Site>>().site; }
 
   void observe(ReadingPurpose purpose, std::int64_t utc_s, Status status,
@@ -117,8 +113,9 @@ class BatteryMonitor {
 
   /// Limits of the order in force.
   [[nodiscard]] AllowedOrder allowed_order(const BatteryMeasurement& measurement, Margin margin) {
-    GuardInputs in{
-        .now_utc_s = now_utc_s(), .measurement = measurement, .previous_power_w = order_.power_w()};
+    GuardInputs in{.now_utc_s = utc_seconds(clock_),
+                   .measurement = measurement,
+                   .previous_power_w = order_.power_w()};
     CycleRecord between;  // belongs to no cycle
     parts_.put({.is_tick = false, .margin = margin}, between, in);
     return {.power_w = guard_.rechecked_power_w(in), .reserve_soc_e4 = in.reserve_soc_e4};

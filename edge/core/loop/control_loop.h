@@ -139,17 +139,13 @@ class ControlLoop {
 
   CycleRecord final_record(Reason reason) {
     mode_ = Mode::kStopping;
-    CycleRecord record{.utc_s = now_utc_s(),
+    CycleRecord record{.utc_s = utc_seconds(clock_),
                        .cycle = cycle_,
                        .mode = mode_,
                        .reason = reason,
                        .battery_status = Status::kOk};
     fill_totals(record);
     return record;
-  }
-
-  [[nodiscard]] std::int64_t now_utc_s() const {
-    return clock_.now_utc_ns() / kNanosecondsPerSecond;
   }
 
   void decide(CycleRecord& record) {
@@ -172,7 +168,7 @@ class ControlLoop {
   /// The tick, or later if more than the price wait has passed: after a suspend or a clock jump old
   /// data must not count as new.
   std::int64_t decision_utc_s(std::int64_t tick_utc_s) const {
-    const std::int64_t latest_utc_s = now_utc_s() - settings_.price_wait_s;
+    const std::int64_t latest_utc_s = utc_seconds(clock_) - settings_.price_wait_s;
     return latest_utc_s > tick_utc_s ? latest_utc_s : tick_utc_s;
   }
 
@@ -201,7 +197,7 @@ class ControlLoop {
     if (mode_ == Mode::kRunning) {
       write_order(record.ordered_power_w, record, order_.write_until_ns());
       if (record.has_measurement) {
-        of<SupervisionPart>().supervision.on_ordered(now_utc_s(), record.battery_status);
+        of<SupervisionPart>().supervision.on_ordered(utc_seconds(clock_), record.battery_status);
       }
     } else if (mode_ == Mode::kHolding) {
       write_order(0, record, order_.write_until_ns());
@@ -216,7 +212,7 @@ class ControlLoop {
   }
 
   void write_order(std::int32_t power_w, CycleRecord& record, std::int64_t write_until_ns) {
-    note_price_age(now_utc_s(), record);
+    note_price_age(utc_seconds(clock_), record);
     record.ordered_power_w = power_w;
     record.battery_status = order_.write(power_w, of<ReservePart>().soc_e4, write_until_ns);
     record.written = record.battery_status == Status::kOk;

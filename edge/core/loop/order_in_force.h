@@ -58,7 +58,7 @@ class OrderInForce {
     since_s_ = time_.now_s();
     if (!measurement.has_order_power) return;
     power_w_ = measurement.order_power_w;
-    const std::int64_t utc_s = now_utc_s();
+    const std::int64_t utc_s = utc_seconds(clock_);
     const bool is_expected = power_w_ == expected_power_w_ && expected_utc_s_ <= utc_s &&
                              utc_s - expected_utc_s_ <= settings_.order_duration_s;
     if (is_expected) since_s_ -= utc_s - expected_since_utc_s_;
@@ -136,7 +136,7 @@ class OrderInForce {
   [[nodiscard]] Response response(const BatteryMeasurement& m) const {
     const std::int64_t read_s = time_.now_s();
     const bool is_known = (m.has_order_power || is_confirmed_) && read_s > since_s_;
-    return {.utc_s = now_utc_s(),
+    return {.utc_s = utc_seconds(clock_),
             .steady_s = read_s,
             .is_driven =
                 exists_ && m.dispatch_active && is_known && !m.order_replaced && !m.order_ended,
@@ -149,10 +149,6 @@ class OrderInForce {
   }
 
  private:
-  [[nodiscard]] std::int64_t now_utc_s() const {
-    return clock_.now_utc_ns() / kNanosecondsPerSecond;
-  }
-
   const ControlSettings& settings_;
   Battery& battery_;
   Clock& clock_;

@@ -27,9 +27,9 @@ class TickScheduler {
   /// backwards the next tick is another one.
   bool await_next_tick(std::int64_t& tick_utc_s) {
     do {
-      tick_utc_s = next_tick_utc_s(now_utc_s());
+      tick_utc_s = next_tick_utc_s(utc_seconds(clock_));
       if (!sleep_until_s(tick_utc_s - settings_.read_lead_s)) return false;
-    } while (now_utc_s() < tick_utc_s - kSecondsPerStep - settings_.read_lead_s);
+    } while (utc_seconds(clock_) < tick_utc_s - kSecondsPerStep - settings_.read_lead_s);
     count_missed(tick_utc_s);
     return true;
   }
@@ -64,10 +64,6 @@ class TickScheduler {
   }
 
  private:
-  [[nodiscard]] std::int64_t now_utc_s() const {
-    return clock_.now_utc_ns() / kNanosecondsPerSecond;
-  }
-
   bool sleep_until_s(std::int64_t utc_s) { return sleep_until_ns(utc_s * kNanosecondsPerSecond); }
 
   /// False on a stop request. Returns early when the clock was stepped back: the instant may now be

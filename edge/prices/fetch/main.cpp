@@ -75,7 +75,7 @@ void check_day_ahead(const EdgeConfig& config) {
   const OutlookSettings& outlook = config.outlook;
   const std::string source =
       outlook.file.empty() ? loggable_url(outlook.http.url.view()).c_str() : outlook.file.c_str();
-  const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
+  const std::int64_t now_utc_s = utc_seconds(config.clock);
   DayAheadFetchState fetch_state;
   fetch_state.take(ask_day_ahead(outlook, now_utc_s, [] { return false; }), outlook, now_utc_s);
   if (fetch_state.status != Status::kOk) {
@@ -88,8 +88,7 @@ void check_day_ahead(const EdgeConfig& config) {
 
 int settle_now(const EdgeConfig& config, const SettledSource& source) {
   if (source.url.empty()) return complain("nothing to fetch: set [settled] url");
-  const SettledResult result =
-      fetch_settled(source, config.clock.now_utc_ns() / kNanosecondsPerSecond, {});
+  const SettledResult result = fetch_settled(source, utc_seconds(config.clock), {});
   if (!result.trouble.empty()) return complain("settled prices: " + result.trouble);
   std::printf("%d quarter-hours, %s, kept in %s\n", result.fetched,
               result.is_whole ? "complete up to yesterday" : "yesterday incomplete",
@@ -102,7 +101,7 @@ bool knows_level(const EdgeConfig& config) {
   LogReader log;
   FileMessage ignored;
   CycleRecord newest;
-  const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
+  const std::int64_t now_utc_s = utc_seconds(config.clock);
   return log.open(config.log, ignored) && log.newest(newest) &&
          level_from_log(newest.price_level, now_utc_s).is_known();
 }

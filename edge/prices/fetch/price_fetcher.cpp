@@ -65,7 +65,8 @@ PriceSource::Answer PriceSource::ask(UnitWatch& watch, const std::string& url) c
   const FetchResult fetched = get(url, config_.price.feed.http.timeout_ms);
   Answer answer{.status = fetched.status, .reason = fetched.reason, .wait_s = fetched.wait_s};
   if (fetched.status != Status::kOk) return answer;
-  auto [status, rows, items] = parse_prices(fetched.body, config_.price.feed.fields, now_utc_s());
+  auto [status, rows, items] =
+      parse_prices(fetched.body, config_.price.feed.fields, utc_seconds(config_.clock));
   answer.status = status;
   answer.passed_over = items - static_cast<int>(rows.size());
   std::ranges::stable_sort(rows, {}, &PriceRow::minute_utc_s);
@@ -81,14 +82,14 @@ FetchResult PriceSource::get(const std::string& url, std::int32_t timeout_ms) co
 PriceAnswer PriceSource::fetch_page(const char* url, std::int32_t timeout_ms) const {
   const FetchResult fetched = get(url, timeout_ms);
   if (fetched.status != Status::kOk) return {.status = fetched.status};
-  return parse_prices(fetched.body, config_.price.feed.fields, now_utc_s());
+  return parse_prices(fetched.body, config_.price.feed.fields, utc_seconds(config_.clock));
 }
 
 PublishedHistory find_history(const EdgeConfig& config, const PriceSource& source) {
   PublishedHistory found{.is_done = true};
   if (config.price.history.hours == 0) return found;
   const auto history =
-      std::make_unique<PriceHistory>(config.price.history.hours, source.now_utc_s());
+      std::make_unique<PriceHistory>(config.price.history.hours, utc_seconds(config.clock));
   found.status = fetch_history(source, config.price.feed, config.price.history, source, *history);
   found.hours = history->hours_covered();
   found.rows = history->rows();
@@ -102,9 +103,10 @@ void PriceFetcher::run(const std::function<bool()>& is_over) {
   std::int64_t served_utc_s = 0;
   while (!stop_.stop_requested()) {
     const std::int64_t tick_utc_s = std::max(
-        source_.now_utc_s() / kSecondsPerStep * kSecondsPerStep, config_.clock.anchor_utc_s);
+        utc_seconds(config_.clock) / kSecondsPerStep * kSecondsPerStep, config_.clock.anchor_utc_s);
     // If started long after a tick, the initial request covered it.
-    const bool is_waited_for = served_utc_s != 0 || source_.now_utc_s() < tick_utc_s + kPriceWait_s;
+    const bool is_waited_for =
+        served_utc_s != 0 || utc_seconds(config_.clock) < tick_utc_s + kPriceWait_s;
     const bool is_new = tick_utc_s > served_utc_s && is_waited_for;
     if (is_new) serve(tick_utc_s);
     served_utc_s = tick_utc_s;
@@ -115,7 +117,8 @@ void PriceFetcher::run(const std::function<bool()>& is_over) {
 
 void PriceFetcher::serve(std::int64_t tick_utc_s) {
   const std::int64_t minute_utc_s = tick_utc_s - 60;
-  if (source_.now_utc_s() < busy_utc_s_) not_before_utc_s_ = 0;  // the clock was stepped back
+  if (utc_seconds(config_.clock) < busy_utc_s_)
+    not_before_utc_s_ = 0;  // the clock was stepped back
   bool is_refused = false;
   bool is_found = false;
   for (int i = 0; i < kPriceRequests && !is_found; ++i) {
@@ -143,7 +146,7 @@ PriceSource::Answer PriceFetcher::publish(PriceSource::Answer answer, std::int64
   }
   if (answer.status == Status::kServerBusy) {
     const double pause_s = answer.wait_s > 0 ? answer.wait_s : kBusyPauseS;
-    busy_utc_s_ = source_.now_utc_s();
+    busy_utc_s_ = utc_seconds(config_.clock);
     not_before_utc_s_ = busy_utc_s_ + static_cast<std::int64_t>(pause_s) + 1;
   }
   if (answer.status != reported_) {

@@ -63,9 +63,6 @@ class PriceSource {
   /// Interface of history_pages.h.
   [[nodiscard]] PriceAnswer fetch_page(const char* url, std::int32_t timeout_ms) const;
 
-  [[nodiscard]] std::int64_t now_utc_s() const {
-    return config_.clock.now_utc_ns() / kNanosecondsPerSecond;
-  }
   // Clock interface of fetch_history.
   [[nodiscard]] static std::int64_t monotonic_ns() { return clock_ns(CLOCK_MONOTONIC); }
   [[nodiscard]] const ScaledClock& scaled() const { return config_.clock; }

@@ -173,7 +173,7 @@ void fetch_settled_daily(const SettledSource& source, const ScaledClock& clock,
   SettledSchedule schedule;
   std::string trouble_before;
   while (!stop.stop_requested()) {
-    const std::int64_t now_utc_s = clock.now_utc_ns() / kNanosecondsPerSecond;
+    const std::int64_t now_utc_s = utc_seconds(clock);
     if (schedule.is_due(now_utc_s)) {
       const SettledResult result = fetch_settled(source, now_utc_s, stop);
       schedule.tried(now_utc_s, result.is_whole && result.trouble.empty(), result.wait_s);

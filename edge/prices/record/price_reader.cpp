@@ -138,7 +138,7 @@ void PriceReader::take_plan(std::span<const char> bytes, std::int64_t outlook_nu
 Status PriceReader::refusal_of(const PublishedPrices& published) const {
   if (published.status != Status::kOk) return published.status;
   const PriceRow& row = published.row;
-  const std::int64_t now_utc_s = clock_.now_utc_ns() / kNanosecondsPerSecond;
+  const std::int64_t now_utc_s = utc_seconds(clock_);
   const bool is_row =
       row.minute_utc_s > 0 && row.minute_utc_s % 60 == 0 &&
       row.minute_utc_s + 60 <= now_utc_s + kClockToleranceS &&

@@ -60,9 +60,7 @@ class EdgeProcess {
     config_ = load_edge_settings(scenario, folder_.file("edge.toml"), settings);
   }
   [[nodiscard]] const EdgeConfig& config() const { return config_; }
-  [[nodiscard]] std::int64_t now_utc_s() const {
-    return config_.clock.now_utc_ns() / kNanosecondsPerSecond;
-  }
+  [[nodiscard]] std::int64_t now_utc_s() const { return utc_seconds(config_.clock); }
 
   /// Starts the controller. `recording`: file of its bus traffic; empty: none.
   void start(const std::string& recording) {

@@ -51,7 +51,7 @@ void run_market(const MarketOptions& options) {
   const ScaledClock clock = options.clock.clock();
   const std::optional<AuctionView> auction = auction_of(options, clock);
   MarketServer server(options.server, view, clock, auction ? &*auction : nullptr);
-  const std::int64_t now_utc_s = clock.now_utc_ns() / kNanosecondsPerSecond;
+  const std::int64_t now_utc_s = utc_seconds(clock);
   check_coverage(view, now_utc_s);
   std::printf("bess-sim market: listening on %s://%s:%d, %s at time scale %d\n",
               options.server.tls_certificate.empty() ? "http" : "https",

@@ -122,9 +122,8 @@ void MarketServer::answer(Dataset dataset, const httplib::Request& request,
 }
 
 void MarketServer::answer_day_ahead(const httplib::Request& request, httplib::Response& response) {
-  const AuctionAnswer answer =
-      auction_->answer(request.get_param_value("start"), request.get_param_value("end"),
-                       clock_.now_utc_ns() / kNanosecondsPerSecond);
+  const AuctionAnswer answer = auction_->answer(
+      request.get_param_value("start"), request.get_param_value("end"), utc_seconds(clock_));
   auction_faults_ += answer.fault != AuctionFault::kNone ? 1 : 0;
   response.status = answer.status;
   const char* type = answer.fault == AuctionFault::kHtml ? "text/html" : kJson;
