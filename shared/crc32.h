@@ -43,4 +43,10 @@ class Crc32 {
   std::uint32_t state_ = 0xFFFFFFFFu;
 };
 
+inline std::uint32_t crc32_of(const void* data, std::size_t size) {
+  Crc32 crc;
+  crc.add_bytes(data, size);
+  return crc.value();
+}
+
 }  // namespace bess

@@ -156,9 +156,8 @@ FixedText<639> prices_file(const EdgeConfig& config) {
   std::error_code ignored;
   const std::string folder =
       std::filesystem::absolute(config.state.folder.c_str(), ignored).lexically_normal().string();
-  Crc32 crc;
-  crc.add_bytes(folder.data(), folder.size());
-  return formatted("/dev/shm/bess-%u-%08x.prices", static_cast<unsigned>(getuid()), crc.value())
+  return formatted("/dev/shm/bess-%u-%08x.prices", static_cast<unsigned>(getuid()),
+                   crc32_of(folder.data(), folder.size()))
       .c_str();
 }
 
@@ -166,9 +165,7 @@ std::int32_t day_ahead_offset_s(const EdgeConfig& config) {
   constexpr std::int32_t kSpread_s = 120;
   if (!config.clock.is_real_time()) return 0;
   const std::string id = battery_id(config.state.folder.c_str());
-  Crc32 crc;
-  crc.add_bytes(id.data(), id.size());
-  return static_cast<std::int32_t>(crc.value() % kSpread_s);
+  return static_cast<std::int32_t>(crc32_of(id.data(), id.size()) % kSpread_s);
 }
 
 StateFilePaths state_file_paths(const EdgeConfig& config, std::string_view name) {

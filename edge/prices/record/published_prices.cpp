@@ -13,16 +13,10 @@ static_assert(std::is_trivially_copyable_v<PublishedOutlook>);
 
 bool is_status(Status status) { return static_cast<int>(status) < kStatusCount; }
 
-std::uint32_t checksum_of(std::span<const char> bytes) {
-  Crc32 crc;
-  crc.add_bytes(bytes.data(), bytes.size());
-  return crc.value();
-}
-
 template <typename Part>
 std::size_t put(const Part& part, std::span<char> at) {
   std::memcpy(at.data(), &part, sizeof part);
-  const std::uint32_t sum = checksum_of(at.first(sizeof part));
+  const std::uint32_t sum = crc32_of(at.data(), sizeof part);
   std::memcpy(at.data() + sizeof part, &sum, sizeof sum);
   return sizeof part + sizeof sum;
 }
@@ -32,7 +26,7 @@ bool take(std::span<const char> at, Part& part) {
   std::uint32_t sum = 0;
   if (at.size() < sizeof part + sizeof sum) return false;
   std::memcpy(&sum, at.data() + sizeof part, sizeof sum);
-  if (sum != checksum_of(at.first(sizeof part))) return false;
+  if (sum != crc32_of(at.data(), sizeof part)) return false;
   std::memcpy(&part, at.data(), sizeof part);
   return true;
 }

@@ -26,12 +26,10 @@ std::string_view end_of(std::string_view text, const ChecksumFrame& frame) {
 }  // namespace
 
 FixedText<31> checksum_end(std::string_view text, const ChecksumFrame& frame) {
-  Crc32 crc;
-  crc.add_bytes(text.data(), text.size());
   char end[32];
   std::snprintf(end, sizeof end, "%.*s%08x%.*s", static_cast<int>(frame.before.size()),
-                frame.before.data(), crc.value(), static_cast<int>(frame.after.size()),
-                frame.after.data());
+                frame.before.data(), crc32_of(text.data(), text.size()),
+                static_cast<int>(frame.after.size()), frame.after.data());
   return {end};
 }
 

@@ -36,10 +36,8 @@ std::string battery_id(const std::string& state_folder) {
   std::error_code ignored;
   const auto folder = std::filesystem::weakly_canonical(state_folder, ignored).string();
   const std::string text = machine_id() + "\n" + (folder.empty() ? state_folder : folder);
-  Crc32 crc;
-  crc.add_bytes(text.data(), text.size());
   char hex[16];
-  std::snprintf(hex, sizeof hex, "%08x", crc.value());
+  std::snprintf(hex, sizeof hex, "%08x", crc32_of(text.data(), text.size()));
   return hex;
 }
 

@@ -21,9 +21,7 @@ static_assert(used_bytes() <= kCrcOffset, "the record on disk is full");
 
 /// CRC of all preceding bytes.
 std::uint32_t crc_of(std::span<const std::uint8_t> record) {
-  Crc32 crc;
-  crc.add_bytes(record.data(), record.size() - kCrcBytes);
-  return crc.value();
+  return crc32_of(record.data(), record.size() - kCrcBytes);
 }
 
 }  // namespace

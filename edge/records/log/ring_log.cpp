@@ -54,9 +54,7 @@ void fill_header(std::uint8_t (&header)[kHeaderUsedBytes], std::size_t record_by
   put_bytes(kVersion, 4, header + 8);
   put_bytes(record_bytes, 4, header + 12);
   put_bytes(static_cast<std::uint64_t>(capacity), 8, header + 16);
-  Crc32 crc;
-  crc.add_bytes(header, 24);
-  put_bytes(crc.value(), 4, header + 24);
+  put_bytes(crc32_of(header, 24), 4, header + 24);
 }
 
 /// Neither intact (possibly of a later version) nor never written.

@@ -180,11 +180,7 @@ void add_wear(const StorageWear& wear, const Metrics& text) {
 }
 
 /// CRC of the memory image, padding included.
-std::uint32_t crc_of(const RunStatus& status) {
-  Crc32 crc;
-  crc.add_bytes(&status, sizeof status);
-  return crc.value();
-}
+std::uint32_t crc_of(const RunStatus& status) { return crc32_of(&status, sizeof status); }
 
 }  // namespace
 
