@@ -2,7 +2,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -16,6 +15,7 @@
 #include "edge/records/log/atomic_file.h"
 #include "edge/records/log/journal.h"
 #include "edge/records/log/log_reader.h"
+#include "shared/host/text.h"
 #include "shared/local_text.h"
 
 namespace bess {
@@ -52,11 +52,10 @@ std::string take_power(std::string_view text, std::optional<std::int64_t>& power
   const bool is_kilo = digits.ends_with('k');
   if (is_kilo) digits.remove_suffix(1);
   double number = 0;
-  const char* const last = digits.data() + digits.size();
-  const auto [end, error] = std::from_chars(digits.data(), last, number);
+  const bool is_number = read_number(digits, number);
   const double watts = is_kilo ? 1e3 * number : number;
   const bool is_whole = std::abs(watts) <= kLargest && watts == std::nearbyint(watts);
-  if (error != std::errc{} || end != last || !is_whole) {
+  if (!is_number || !is_whole) {
     return "must be a whole number of watts such as 2000, 2000W or -2kW, not " + std::string(text);
   }
   power_w = static_cast<std::int64_t>(watts);

@@ -6,6 +6,7 @@
 
 #include "edge/records/log/atomic_file.h"
 #include "edge/records/log/text_buffer.h"
+#include "shared/host/text.h"
 
 namespace bess {
 
@@ -18,9 +19,7 @@ constexpr ClearedTrips kUnreadable{.unreadable = true};
 /// Older versions wrote only the time.
 bool parse_older(std::string_view text, ClearedTrips& cleared) {
   if (!text.ends_with('\n')) return false;
-  const char* const end = text.data() + text.size() - 1;
-  const auto read = std::from_chars(text.data(), end, cleared.utc_s.front());
-  return read.ec == std::errc{} && read.ptr == end;
+  return read_number(text.substr(0, text.size() - 1), cleared.utc_s.front());
 }
 
 }  // namespace

@@ -1,12 +1,12 @@
 #include "edge/companions/notify/notifier.h"
 
-#include <charconv>
 #include <cstdlib>
 #include <utility>
 
 #include "edge/companions/notify/topics.h"
 #include "edge/records/log/journal.h"
 #include "shared/host/run_program.h"
+#include "shared/host/text.h"
 
 namespace bess {
 namespace {
@@ -178,10 +178,8 @@ void Notifier::publish(const ControllerStatus& status) {
 void Notifier::follow(const Order& order) {
   std::vector<std::string> words = {settings_.program, "hold"};
   if (order.topic.ends_with(kHoldPowerTopic)) {
-    const char* const end = order.payload.data() + order.payload.size();
     std::int32_t power_w = 0;
-    const auto [read_up_to, error] = std::from_chars(order.payload.data(), end, power_w);
-    if (error != std::errc{} || read_up_to != end || std::abs(power_w) > settings_.power_w) {
+    if (!read_number(order.payload, power_w) || std::abs(power_w) > settings_.power_w) {
       return say(JournalLevel::kWarning,
                  "mqtt order refused: hold_power/set must be whole W, at most [battery] power_w");
     }

@@ -1,7 +1,6 @@
 #include "edge/prices/fetch/day_ahead_feed.h"
 
 #include <algorithm>
-#include <charconv>
 
 #include "edge/prices/fetch/fetch.h"
 #include "edge/records/log/atomic_file.h"
@@ -26,9 +25,7 @@ bool parse_line(std::string_view line, KnownPrice& price) {
   const std::size_t last = line.rfind(' ');
   if (first == line.npos || first == last) return false;
   const std::string_view centi = line.substr(first + 1, last - first - 1);
-  const auto read =
-      std::from_chars(centi.data(), centi.data() + centi.size(), price.centi_eur_per_mwh);
-  return read.ec == std::errc{} && read.ptr == centi.data() + centi.size() &&
+  return read_number(centi, price.centi_eur_per_mwh) &&
          parse_utc(line.substr(0, first), price.utc_s) &&
          parse_utc(line.substr(last + 1), price.received_utc_s);
 }

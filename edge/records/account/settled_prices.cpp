@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 
 #include "edge/core/control/quarter_hour_energy.h"
@@ -40,9 +39,7 @@ bool parse_line(std::string_view line, SettledQuarter& quarter) {
   if (second == line.npos) return false;
   const std::string_view price = line.substr(first + 1, second - first - 1);
   const std::string_view state = line.substr(second + 1);
-  const auto [end, trouble] =
-      std::from_chars(price.data(), price.data() + price.size(), quarter.eur_per_mwh);
-  if (trouble != std::errc{} || end != price.data() + price.size()) return false;
+  if (!read_number(price, quarter.eur_per_mwh)) return false;
   if (state != "published" && state != "validated") return false;
   quarter.state = state == "validated" ? PriceState::kValidated : PriceState::kPublished;
   return parse_utc(line.substr(0, first), quarter.start_utc_s) &&
