@@ -132,6 +132,12 @@ void add_formatted(std::string& text, const char* format, ...) {
   va_end(arguments);
 }
 
+void replace_all(std::string& text, std::string_view what, std::string_view by) {
+  for (std::size_t at = text.find(what); at != text.npos; at = text.find(what, at + by.size())) {
+    text.replace(at, what.size(), by);
+  }
+}
+
 std::string comment_lines(std::string_view text) {
   std::string lines;
   while (!text.empty()) lines.append("# ").append(take_line(text)).append("\n");

@@ -60,6 +60,9 @@ bool read_number(std::string_view text, Number& number) {
   return read.ec == std::errc{} && read.ptr == end;
 }
 
+/// Replaces every `what` in `text`.
+void replace_all(std::string& text, std::string_view what, std::string_view by);
+
 /// Lines of `text`, each with "# " in front.
 std::string comment_lines(std::string_view text);
 

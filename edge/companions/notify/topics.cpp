@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "shared/host/text.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -47,12 +48,6 @@ void set_newest(Json& json, JsonValue all) {
   if (!is_true(last["held"])) return;
   set_number(json, "hold_w", last["hold_power_w"]);
   json.set("hold_until_utc", last["hold_until_utc"].text_or(""));
-}
-
-void replace(std::string& text, std::string_view what, const std::string& by) {
-  for (std::size_t at = text.find(what); at != text.npos; at = text.find(what, at + by.size())) {
-    text.replace(at, what.size(), by);
-  }
 }
 
 }  // namespace
@@ -128,14 +123,14 @@ std::string discovery_json(const NotifySettings& settings, const std::string& ve
   std::string text(page_file("discovery.json"));
   std::string controls(page_file("controls.json"));  // its members join those of discovery.json
   controls = controls.substr(1, controls.rfind('}') - 1) + ",";
-  replace(text, "\"$CONTROLS\": {},", settings.mqtt.orders ? controls : "");
-  replace(text, "$ID", "bess_" + settings.id);
-  replace(text, "$NODE", topic(settings.name, ""));
-  replace(text, "$NAME", settings.name);
-  replace(text, "$VERSION", version);
-  replace(text, "\"$EXPIRE_S\"", std::to_string(settings.every_s * 10));
-  replace(text, "\"-$POWER_W\"", std::to_string(-settings.power_w));
-  replace(text, "\"$POWER_W\"", std::to_string(settings.power_w));
+  replace_all(text, "\"$CONTROLS\": {},", settings.mqtt.orders ? controls : "");
+  replace_all(text, "$ID", "bess_" + settings.id);
+  replace_all(text, "$NODE", topic(settings.name, ""));
+  replace_all(text, "$NAME", settings.name);
+  replace_all(text, "$VERSION", version);
+  replace_all(text, "\"$EXPIRE_S\"", std::to_string(settings.every_s * 10));
+  replace_all(text, "\"-$POWER_W\"", std::to_string(-settings.power_w));
+  replace_all(text, "\"$POWER_W\"", std::to_string(settings.power_w));
   return Json::parse(text).line();
 }
 

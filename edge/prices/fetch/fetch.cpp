@@ -38,12 +38,6 @@ Status status_of(const HttpOutcome& outcome) {
 
 }  // namespace
 
-void replace_all(std::string& text, std::string_view what, std::string_view by) {
-  for (std::size_t at = text.find(what); at != text.npos; at = text.find(what, at + by.size())) {
-    text.replace(at, what.size(), by);
-  }
-}
-
 FetchResult fetch(const HttpSettings& settings, const std::string& url, std::int32_t timeout_ms,
                   const StopRequested& stop_requested, std::size_t bytes_max) {
   HttpRequest request{.url = url,

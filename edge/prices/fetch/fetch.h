@@ -59,9 +59,6 @@ struct FetchResult {
   double wait_s = 0;     ///< requested by the server
 };
 
-/// For the {names} in a url.
-void replace_all(std::string& text, std::string_view what, std::string_view by);
-
 /// GET of `url` with the settings' headers and CA file, and the smaller of both time-outs.
 FetchResult fetch(const HttpSettings& settings, const std::string& url, std::int32_t timeout_ms,
                   const StopRequested& stop_requested,

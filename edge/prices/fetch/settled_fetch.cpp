@@ -14,6 +14,7 @@
 #include "edge/records/log/journal.h"
 #include "shared/host/http_client.h"
 #include "shared/host/json.h"
+#include "shared/host/text.h"
 #include "shared/local_time.h"
 #include "shared/scaled_clock.h"
 #include "shared/units_and_limits.h"
