@@ -59,11 +59,8 @@ int run_earned(const EarnedOptions& options, SettingsFile& settings) {
   const std::int32_t today = local_day_at(utc_seconds(config.clock));
   Period period{today, today};
   if (!options.period.empty()) parse_period(options.period, today, period);
-  std::string trouble;
-  const MoneyTerms terms =
-      money_terms({.capacity_wh = config.battery.capacity_wh,
-                   .settled_file = std::string(state_file(config, "settled.csv").view())},
-                  trouble);
+  MoneyTerms terms{.capacity_wh = config.battery.capacity_wh};
+  const std::string trouble = terms.settled.read(state_file(config, "settled.csv").c_str());
   if (!trouble.empty()) report(JournalLevel::kWarning, "%s", trouble.c_str());
   const Earnings earnings(accounts_of_days(log, period.first_day, period.last_day, terms));
   if (earnings.days().empty()) {

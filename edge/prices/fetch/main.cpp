@@ -169,6 +169,7 @@ int run(const Options& options) {
   config.outlook.ask_offset_s = day_ahead_offset_s(config);
   set_market_time_zone();
   SettledSource settled;
+  settled.file = state_file(config, "settled.csv").c_str();
   if (!load_settled_source(options.config_path, settled, error)) {
     complain(error);  // must not stop the prices for trading
     if (options.check || options.settle) return 1;

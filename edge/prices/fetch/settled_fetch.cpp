@@ -93,7 +93,6 @@ bool load_settled_source(const std::string& path, SettledSource& source, std::st
   TomlValue document;
   if (!parse_toml_file(path, document, error)) return false;
   TomlTable root(&document, path, "", error);
-  source.file = read_money_settings(root).settled_file;
   read_settled(section(root, "settled"), source);
   return error.empty();
 }

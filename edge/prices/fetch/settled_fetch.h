@@ -20,7 +20,7 @@ namespace bess {
 struct SettledSource {
   std::string url;  ///< with {from} and {until}, or Elia's without a query; empty: no fetch
   std::string ca_file;
-  std::string file;  ///< state file
+  std::string file;  ///< of settled prices, in the state folder
   std::int32_t days = 62;
   std::int32_t timeout_ms = 60'000;
 };

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "shared/host/exchanged_days.h"
-#include "shared/host/toml_reader.h"
 
 namespace bess {
 
@@ -40,22 +39,9 @@ class SettledPrices {
 /// Days of quarter-hours that are kept, days of 25 hours included.
 inline constexpr int kSettledDaysMax = 100;
 
-/// Settings for earnings: file of settled prices, and capacity of a battery that reports none.
-/// Independent of the controller's settings.
-struct MoneySettings {
-  std::int32_t capacity_wh = 8'000;  ///< [battery] capacity_wh
-  std::string settled_file;          ///< of bess-prices; may be missing
-};
-
-/// `root`: whole configuration; other readers report its errors.
-MoneySettings read_money_settings(TomlTable& root);
-
 /// Input for earnings.
 struct MoneyTerms {
   SettledPrices settled{};
   std::int32_t capacity_wh = 0;  ///< of a device that reports none
 };
-/// Reads the file of settled prices; `trouble` is one line if it is unreadable.
-MoneyTerms money_terms(const MoneySettings& settings, std::string& trouble);
-
 }  // namespace bess

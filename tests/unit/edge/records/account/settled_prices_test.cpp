@@ -1,5 +1,5 @@
 // File of settled prices: written, read back, damaged; newer prices replace older ones, and
-// validated ones stay. Also the keys for accounting.
+// validated ones stay.
 #include "edge/records/account/settled_prices.h"
 
 #include <gmock/gmock.h>
@@ -64,18 +64,6 @@ TEST(SettledPrices, ADamagedFileIsRejected) {
   EXPECT_THAT(prices.read(folder.write("settled.csv", text + "x")), Names("settled.csv"));
   EXPECT_EQ(prices.read(folder.write("settled.csv", text)), "");
   EXPECT_EQ(prices.quarters().size(), 2u);
-}
-
-TEST(MoneySettings, AreReadOutOfTheWholeConfiguration) {
-  const TemporaryFolder folder;
-  const std::string path = folder.write("edge.toml", "[battery]\ncapacity_wh = 5000\n");
-  TomlValue document;
-  std::string error;
-  ASSERT_TRUE(parse_toml_file(path, document, error)) << error;
-  TomlTable root(&document, path, "", error);
-  const MoneySettings money = read_money_settings(root);
-  EXPECT_EQ(money.capacity_wh, 5'000);
-  EXPECT_EQ(money.settled_file, folder.file("state/settled.csv"));
 }
 
 }  // namespace
