@@ -55,6 +55,10 @@ class TomlTable {
   /// Text without control characters.
   void line(std::string_view key, std::string& value);
   const TomlValue* table(std::string_view key);
+  /// Reader of the table at the key, "[key]" in messages.
+  TomlTable child(std::string_view key) {
+    return {table(key), file_, std::string("[").append(key).append("]"), error_};
+  }
   const TomlArray* array(std::string_view key);
   const TomlValue* node(std::string_view key);
 

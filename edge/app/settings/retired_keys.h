@@ -58,8 +58,7 @@ static_assert(std::ssize(kRetiredKeys) <= RetiredKeys::capacity());
 
 /// Section of the configuration without its retired keys, which `retired` collects.
 inline TomlTable section(TomlTable& root, std::string_view name, RetiredKeys* retired = nullptr) {
-  TomlTable table(root.table(name), root.file(), std::string("[").append(name).append("]"),
-                  root.error());
+  TomlTable table = root.child(name);
   for (const RetiredKey& old : kRetiredKeys) {
     if (old.section != name || !table.take_retired(old.key) || retired == nullptr) continue;
     static_cast<void>(retired->try_push_back(old));

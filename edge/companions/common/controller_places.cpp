@@ -17,10 +17,9 @@ std::string controller_beside() {
 
 ControllerPlaces controller_places(TomlTable& root) {
   std::string state = "state";
-  TomlTable table(root.table("state"), root.file(), "[state]", root.error());
-  table.line("folder", state);
+  root.child("state").line("folder", state);
   state = root.resolved(state);
-  TomlTable battery(root.table("battery"), root.file(), "[battery]", root.error());
+  TomlTable battery = root.child("battery");
   std::string name = default_battery_name(state);
   battery.line("name", name);
   if (root.ok() && !is_battery_name(name)) {

@@ -86,10 +86,9 @@ bool load_notify_settings(const std::string& path, NotifySettings& settings, std
   TomlTable root(&document, path, "", error);
   static_cast<ControllerPlaces&>(settings) = controller_places(root);
   root.line("contact", settings.contact);
-  TomlTable battery(root.table("battery"), path, "[battery]", error);
-  battery.integer("power_w", settings.power_w, 1, 1'000'000'000);
-  TomlTable settled(root.table("settled"), path, "[settled]", error);
-  if (settled.has("url")) settings.settled_file = settings.state_folder + "/settled.csv";
+  root.child("battery").integer("power_w", settings.power_w, 1, 1'000'000'000);
+  if (root.child("settled").has("url"))
+    settings.settled_file = settings.state_folder + "/settled.csv";
   read_notify(section(root, "notify"), settings);
   return error.empty();
 }

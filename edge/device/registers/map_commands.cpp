@@ -203,7 +203,7 @@ void read_saved(TomlTable& table, RegisterMap& map) {
 void read_map_commands(TomlTable& root, const MapDefaults& defaults, RegisterMap& map) {
   constexpr std::string_view kNames[kCommandCount] = {"charge",  "idle",   "discharge",
                                                       "release", "enable", "refresh"};
-  TomlTable table = map_child(root, "command");
+  TomlTable table = root.child("command");
   read_saved(table, map);
   read_conditions(table, "precondition", map, map.precondition);
   if (table.has("order")) {  // they differ only in their arguments

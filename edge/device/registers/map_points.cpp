@@ -37,7 +37,7 @@ void read_numbers(TomlTable& table, std::string_view key, std::int64_t max,
 }
 
 void read_unit_groups(TomlTable& root, RegisterMap& map) {
-  TomlTable groups = map_child(root, "unit_groups");
+  TomlTable groups = root.child("unit_groups");
   if (groups.value() == nullptr) return;
   for (const auto& [key, node] : *groups.value()->as<TomlMembers>()) {
     UnitGroup group;
@@ -49,7 +49,7 @@ void read_unit_groups(TomlTable& root, RegisterMap& map) {
 }
 
 void read_sunspec(TomlTable& root, RegisterMap& map) {
-  TomlTable table = map_child(root, "sunspec");
+  TomlTable table = root.child("sunspec");
   if (table.value() == nullptr) return;
   table.require("models");
   read_numbers(table, "models", 65'534, map.models);
@@ -220,7 +220,7 @@ void read_point(TomlTable& table, const MapDefaults& defaults, RegisterMap& map)
 }  // namespace
 
 void read_map_header(TomlTable& root, RegisterMap& map, MapDefaults& defaults) {
-  TomlTable table = map_child(root, "map");
+  TomlTable table = root.child("map");
   for (const std::string_view key : {"name", "unit"}) table.require(key);
   FixedText<255> description;  // description and one_client are documentation only
   bool one_client = false;

@@ -49,7 +49,7 @@ std::int32_t soc_register_step_e4(const RegisterMap& map) {
 }
 
 void read_response(TomlTable& root, RegisterMap& map) {
-  TomlTable table = map_child(root, "response");
+  TomlTable table = root.child("response");
   map.response.soc_step_e4 = soc_register_step_e4(map);
   table.integer("settle_s", map.response.settle_s, 1, kSettleSMax);
   table.integer("tolerance_percent", map.response.tolerance_percent, 1, 50);
@@ -63,19 +63,19 @@ void read_response(TomlTable& root, RegisterMap& map) {
 }  // namespace
 
 void read_map_policies(TomlTable& root, RegisterMap& map) {
-  TomlTable writes = map_child(root, "writes");
+  TomlTable writes = root.child("writes");
   writes.integer("eeprom_writes_per_day", map.writes.eeprom_writes_per_day, 1, 100'000);
   writes.integer("reserve", map.writes.reserve, 0, 1'000);
   if (map.writes.reserve > 0 && map.writes.reserve >= map.writes.eeprom_writes_per_day) {
     writes.fail("reserve", "must be below eeprom_writes_per_day");
   }
   writes.finish();
-  TomlTable exceptions = map_child(root, "exceptions");
+  TomlTable exceptions = root.child("exceptions");
   read_codes(exceptions, "retry", map.exceptions.retry);
   read_codes(exceptions, "not_permitted", map.exceptions.not_permitted);
   exceptions.finish();
   read_response(root, map);
-  TomlTable test = map_child(root, "commissioning");
+  TomlTable test = root.child("commissioning");
   test.integer("power_w", map.commissioning.power_w, 1, 1'000'000);
   test.integer("duration_s", map.commissioning.duration_s, 5, 600);
   test.integer("settle_s", map.commissioning.settle_s, 1, 300);
@@ -87,7 +87,7 @@ void read_map_policies(TomlTable& root, RegisterMap& map) {
 }
 
 void read_map_simulator(TomlTable& root, RegisterMap& map) {
-  TomlTable table = map_child(root, "simulator");
+  TomlTable table = root.child("simulator");
   read_conditions(table, "active", map, map.simulator.active);
   read_power_cases(table, "order_power", map, map.simulator.order_power);
   read_assignments(table, "initial", map, map.simulator.initial);

@@ -37,11 +37,6 @@ inline std::string quoted(std::string_view name) {
   return std::string("\"").append(name).append("\"");
 }
 
-inline TomlTable map_child(TomlTable& parent, std::string_view key) {
-  return {parent.table(key), parent.file(), std::string("[").append(key).append("]"),
-          parent.error()};
-}
-
 /// Calls `read` for each table of the list `key`, e.g. [[point]].
 template <typename Function>
 void for_each_table(TomlTable& parent, std::string_view key, Function read) {

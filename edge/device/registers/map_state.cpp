@@ -103,7 +103,7 @@ void read_power_cases(TomlTable& table, std::string_view key, const RegisterMap&
 }
 
 void read_map_limits(TomlTable& root, RegisterMap& map) {
-  TomlTable power = map_child(root, "power");
+  TomlTable power = root.child("power");
   power.require("charge_w_max");
   power.require("discharge_w_max");
   power.integer("charge_w_max", map.charge_w_max, 1, 1'000'000'000);
@@ -112,7 +112,7 @@ void read_map_limits(TomlTable& root, RegisterMap& map) {
 }
 
 void read_map_watchdog(TomlTable& root, RegisterMap& map) {
-  TomlTable table = map_child(root, "watchdog");
+  TomlTable table = root.child("watchdog");
   int kind = 0;
   RegisterName remaining;
   table.require("kind");
@@ -140,7 +140,7 @@ void read_map_watchdog(TomlTable& root, RegisterMap& map) {
 }
 
 void read_map_state(TomlTable& root, RegisterMap& map) {
-  TomlTable state = map_child(root, "state");
+  TomlTable state = root.child("state");
   read_measured(state, map);
   read_conditions(state, "active", map, map.active);
   read_conditions(state, "alarms", map, map.alarms);
