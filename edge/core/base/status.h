@@ -8,6 +8,7 @@
 
 namespace bess {
 
+/// Logged by value: new ones are appended.
 enum class [[nodiscard]] Status : std::uint8_t{
     kOk,
     kNotConnected,    ///< connection refused or closed

@@ -15,6 +15,7 @@
 
 namespace bess {
 
+/// Logged by value: new ones are appended.
 enum class OutlookSource : std::uint8_t { kNone, kPlanned, kUsual, kLate, kMissing };
 inline constexpr int kOutlookSourceCount = 5;
 

@@ -17,6 +17,8 @@ namespace bess {
 //   holding   a stop reason is present: 0 W is held for a while             -> running, safe
 //   safe      released: the battery is in its own mode, the loop continues  -> running
 //   stopping  the process ends: 0 W, then release                           (reached from all)
+//
+// Logged by value: new modes are appended.
 
 enum class Mode : std::uint8_t { kStart, kRunning, kHolding, kSafe, kStopping };
 inline constexpr int kModeCount = static_cast<int>(Mode::kStopping) + 1;

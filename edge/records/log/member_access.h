@@ -3,14 +3,62 @@
 //   member<&CycleRecord::price, &PriceReport::fetch_us>()
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 
-#include "edge/records/log/stable_codes.h"
+#include "edge/core/base/check.h"
+#include "edge/core/control/control_types.h"
 
 namespace bess {
+
+// Stable codes of enumerators on disk: of a reason the code in its table, of the others the value.
+// Their enumerators are only appended, so that old logs keep their meaning.
+
+constexpr int count_of(Mode) { return kModeCount; }
+constexpr int count_of(Action) { return kActionCount; }
+constexpr int count_of(Reason) { return kReasonCount; }
+constexpr int count_of(Status) { return kStatusCount; }
+constexpr int count_of(OutlookSource) { return kOutlookSourceCount; }
+
+constexpr std::string_view name_of(Mode mode) { return mode_name(mode); }
+constexpr std::string_view name_of(Action action) { return action_name(action); }
+constexpr std::string_view name_of(Reason reason) { return reason_name(reason); }
+constexpr std::string_view name_of(Status status) { return status_name(status); }
+constexpr std::string_view name_of(OutlookSource source) { return outlook_source_name(source); }
+
+template <typename Enum>
+std::int64_t code_of(Enum enumerator) {
+  BESS_CHECK(static_cast<int>(enumerator) < count_of(enumerator));
+  if constexpr (std::is_same_v<Enum, Reason>) return info_of(enumerator).code;
+  return static_cast<std::int64_t>(enumerator);
+}
+
+/// Requires a code of this version.
+template <typename Enum>
+Enum with_code(std::int64_t code) {
+  if constexpr (std::is_same_v<Enum, Reason>) {
+    code = std::ranges::find(kReasons, code, &ReasonInfo::code) - std::begin(kReasons);
+  }
+  return static_cast<Enum>(code);
+}
+
+/// False for a code of a later version.
+template <typename Enum>
+bool set_by_code(std::int64_t code, Enum& enumerator) {
+  if (code < 0 || code >= count_of(Enum{})) return false;
+  enumerator = with_code<Enum>(code);
+  return true;
+}
+
+/// Name in texts, null-terminated.
+template <typename Enum>
+const char* name_of_code(std::int64_t code) {
+  return name_of(with_code<Enum>(code)).data();
+}
 
 /// Meaning of the integer: number, 0 or 1, seconds since 1970, stable code of an enumerator.
 enum class MemberKind : std::uint8_t { kNumber, kFlag, kUtc, kName };
