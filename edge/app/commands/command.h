@@ -61,6 +61,8 @@ int load_settings(SettingsFile& settings);
 /// Reports one line on stderr or in the journal. Returns exit code 1.
 int failed(const std::string& message);
 
+/// Flushes stdout: 0, or exit code 1 after one line if the output cannot be written.
+int end_of_output();
 /// False after one line if no log can be read; a note if only the last hours can.
 bool open_log(const EdgeConfig& config, LogReader& log);
 

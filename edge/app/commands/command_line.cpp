@@ -88,6 +88,11 @@ int failed(const std::string& message) {
   return 1;
 }
 
+int end_of_output() {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
+  return failed("the output cannot be written");
+}
+
 int load_settings(SettingsFile& settings) {
   if (settings.path.empty()) {
     if (access(kDefaultConfigPath, F_OK) != 0) {

@@ -71,8 +71,7 @@ int run_earned(const EarnedOptions& options, SettingsFile& settings) {
                            : options.json ? earnings.json().text()
                                           : earnings.text();
   std::fputs(text.c_str(), stdout);
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
-  return failed("the output cannot be written");
+  return end_of_output();
 }
 
 }  // namespace

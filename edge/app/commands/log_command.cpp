@@ -127,8 +127,7 @@ int run_log(const LogOptions& options, SettingsFile& settings) {
       print_text(record, options, thresholds);
     }
   }
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
-  return failed("the output cannot be written");
+  return end_of_output();
 }
 
 }  // namespace

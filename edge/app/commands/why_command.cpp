@@ -61,8 +61,7 @@ int run_why(const WhyOptions& options, SettingsFile& settings) {
   const std::string text = options.json ? explanation_json(explanation, config.control).text()
                                         : explanation_text(explanation, config.control);
   std::fputs(text.c_str(), stdout);
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
-  return failed("the output cannot be written");
+  return end_of_output();
 }
 
 }  // namespace
