@@ -80,7 +80,7 @@ bool ExchangeRecorder::start(const char* path, const RecordingHead& head, const 
   if (!write_line(first)) {
     return fail_with_errno(part_path_.c_str(), "cannot be written", error);
   }
-  thread_.start<&ExchangeRecorder::run>(this);
+  queue_.start<&ExchangeRecorder::keep>(this);
   return true;
 }
 
@@ -95,17 +95,6 @@ ExchangeListener ExchangeRecorder::listener() {
 void ExchangeRecorder::push(BusExchange exchange) {
   exchange.utc_ns = clock_.now_utc_ns() - exchange.latency_us * 1'000 * clock_.scale;
   if (!queue_.push(exchange)) ++dropped_;
-}
-
-void ExchangeRecorder::run() {
-  BusExchange exchange;
-  while (true) {
-    if (queue_.wait_and_pop(exchange)) {
-      keep(exchange);
-    } else if (ending_) {
-      return;
-    }
-  }
 }
 
 void ExchangeRecorder::keep(BusExchange& exchange) {
@@ -149,11 +138,7 @@ bool ExchangeRecorder::write_end() {
 
 bool ExchangeRecorder::finish(FileMessage& error) {
   if (fd_ < 0) return true;
-  if (thread_.is_running()) {
-    ending_ = true;
-    queue_.wake();
-    thread_.join();
-  }
+  queue_.finish();
   const bool is_whole = !has_failed_ && write_end() && fsync(fd_) == 0;
   const int cause = errno;
   close(fd_);

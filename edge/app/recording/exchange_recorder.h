@@ -12,7 +12,6 @@
 #include <string_view>
 
 #include "edge/app/recording/recording_mask.h"
-#include "edge/core/memory/plain_thread.h"
 #include "edge/device/battery/modbus_link.h"
 #include "edge/records/log/atomic_file.h"
 #include "edge/records/log/handover_queue.h"
@@ -51,7 +50,6 @@ class ExchangeRecorder {
   static constexpr std::size_t kQueueLength = 128;  // about 20 per control cycle
 
   void push(BusExchange exchange);
-  void run();
   void keep(BusExchange& exchange);
   bool write_line(std::string_view line);
   void stop_writing(const char* why);
@@ -64,13 +62,11 @@ class ExchangeRecorder {
   HandoverQueue<BusExchange, kQueueLength> queue_;
   std::atomic<std::int64_t> written_{0};
   std::atomic<std::int64_t> dropped_{0};
-  std::atomic<bool> ending_{false};
   std::int64_t bytes_ = 0;
   std::int64_t bytes_max_ = 0;
   bool is_writing_ = false;
   bool has_failed_ = false;
   int fd_ = -1;
-  PlainThread thread_;
 };
 
 }  // namespace bess

@@ -139,11 +139,7 @@ JournalLevel level_of(const CycleRecord& record) {
 }  // namespace
 
 EventLog::~EventLog() {
-  if (thread_.is_running()) {
-    ending_ = true;
-    queue_.wake();
-    thread_.join();
-  }
+  queue_.finish();
   if (csv_fd_ >= 0) close(csv_fd_);
 }
 
@@ -169,7 +165,7 @@ bool EventLog::open(const EventLogSettings& settings, const RunIdentity& identit
   publish_in_memory();
   report_disk(totals_.disk_is_failing, nullptr);
   report_run_folder();
-  thread_.start<&EventLog::run>(this);
+  queue_.start<&EventLog::take>(this);
   return true;
 }
 
@@ -237,16 +233,9 @@ bool EventLog::drain(std::int64_t wall_ns_max) const {
   return true;
 }
 
-void EventLog::run() {
-  CycleRecord record;
-  while (true) {
-    if (queue_.wait_and_pop(record)) {
-      keep(record);
-      ++kept_;
-    } else if (ending_) {
-      return;
-    }
-  }
+void EventLog::take(const CycleRecord& record) {
+  keep(record);
+  ++kept_;
 }
 
 /// Write order: rings before status, so that a published record is always readable.
@@ -291,8 +280,7 @@ void EventLog::keep_on_disk(const CycleRecord& record, std::uint64_t number) {
 
 /// Logs each trip and each clearance once.
 void EventLog::report_trip(const CycleRecord& record) {
-  if (record.is_tripped == was_tripped_) return;
-  was_tripped_ = record.is_tripped;
+  if (std::exchange(was_tripped_, record.is_tripped) == record.is_tripped) return;
   char line[160];
   const int size = std::snprintf(line, sizeof line,
                                  "tripped: %s; the battery is released until bess-edge clear --yes",
@@ -390,8 +378,7 @@ void EventLog::add_present_state(const CycleRecord* record, TextBuffer& line) co
 
 /// Logs each begin and end of a disk failure once.
 void EventLog::report_disk(bool is_failing, const CycleRecord* record) {
-  if (is_failing == was_failing_) return;
-  was_failing_ = is_failing;
+  if (std::exchange(was_failing_, is_failing) == is_failing) return;
   char text[256];
   TextBuffer line(text);
   if (is_failing) {

@@ -11,7 +11,6 @@
 #include <cstdint>
 
 #include "edge/core/control/control_types.h"
-#include "edge/core/memory/plain_thread.h"
 #include "edge/records/log/atomic_file.h"
 #include "edge/records/log/handover_queue.h"
 #include "edge/records/log/ring_log.h"
@@ -93,7 +92,7 @@ class EventLog {
   }
   bool open_csv(FileMessage& error);
   bool head_csv();
-  void run();
+  void take(const CycleRecord& record);
   void keep(const CycleRecord& record);
   void report_trip(const CycleRecord& record);
   void keep_in_memory(const CycleRecord& record, std::uint64_t number);
@@ -128,10 +127,8 @@ class EventLog {
   std::int64_t handed_over_ = 0;
   std::atomic<std::int64_t> kept_{0};
   std::atomic<std::int64_t> dropped_{0};
-  std::atomic<bool> ending_{false};
   char status_text_[kStatusBytes];
   char metrics_text_[kMetricsBytes];
-  PlainThread thread_;
 };
 
 }  // namespace bess

@@ -1,5 +1,5 @@
-// Fixed-size queue from one thread to another: the producer never waits, locks or allocates; the
-// consumer sleeps until an item arrives. It decouples the control thread from the disk.
+// Fixed-size queue to a thread of its own: the producer never waits, locks or allocates; the thread
+// sleeps until an item arrives. It decouples the control thread from the disk.
 #pragma once
 
 #include <semaphore.h>
@@ -8,6 +8,8 @@
 #include <atomic>
 #include <cerrno>
 #include <cstddef>
+
+#include "edge/core/memory/plain_thread.h"
 
 namespace bess {
 
@@ -19,6 +21,12 @@ class HandoverQueue {
   HandoverQueue& operator=(const HandoverQueue&) = delete;
   ~HandoverQueue() { sem_destroy(&filled_); }
 
+  /// Starts the thread, which calls `(owner->*kTake)(item)` for each item.
+  template <auto kTake, typename Owner>
+  void start(Owner* owner) {
+    owner_ = owner;
+    thread_.template start<&HandoverQueue::template run<kTake, Owner>>(this);
+  }
   /// False when the queue is full; the item is dropped.
   bool push(const T& item) {
     const std::size_t end = end_.load(std::memory_order_relaxed);
@@ -28,10 +36,27 @@ class HandoverQueue {
     sem_post(&filled_);
     return true;
   }
-  /// Wakes the consumer without an item.
-  void wake() { sem_post(&filled_); }
+  /// Ends the thread, if it was started, after the last item.
+  void finish() {
+    if (!thread_.is_running()) return;
+    ending_ = true;
+    sem_post(&filled_);
+    thread_.join();
+  }
 
-  /// Waits for an item or a wake-up; false after a wake-up with an empty queue.
+ private:
+  template <auto kTake, typename Owner>
+  void run() {
+    T item;
+    while (true) {
+      if (wait_and_pop(item)) {
+        (static_cast<Owner*>(owner_)->*kTake)(item);
+      } else if (ending_) {
+        return;
+      }
+    }
+  }
+  /// False when woken with an empty queue.
   bool wait_and_pop(T& item) {
     while (sem_wait(&filled_) != 0 && errno == EINTR) continue;
     const std::size_t begin = begin_.load(std::memory_order_relaxed);
@@ -41,11 +66,13 @@ class HandoverQueue {
     return true;
   }
 
- private:
   std::array<T, kCapacity> slots_{};
   std::atomic<std::size_t> begin_{0};  ///< moved by the consumer
   std::atomic<std::size_t> end_{0};    ///< moved by the producer
+  std::atomic<bool> ending_{false};
   sem_t filled_{};
+  void* owner_ = nullptr;
+  PlainThread thread_;
 };
 
 }  // namespace bess
