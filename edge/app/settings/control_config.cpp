@@ -12,7 +12,6 @@
 #include "edge/app/settings/price_config.h"
 #include "edge/core/control/full_charge.h"
 #include "edge/device/registers/map_file.h"
-#include "edge/prices/record/transport_security.h"
 #include "edge/records/log/battery_name.h"
 #include "shared/host/text.h"
 #include "shared/units_and_limits.h"
@@ -309,16 +308,9 @@ void read_reserve(TomlTable& root, ControlSettings& control) {
 }
 
 void read_outlook(TomlTable table, OutlookSettings& outlook) {
-  FixedText<255> header_file;
-  PriceTransportKeys transport;
-  table.text("url", outlook.http.url);
+  PriceTransportKeys keys;
+  read_price_server(table, outlook.http, outlook.fields, keys);
   table.text("file", outlook.file);
-  table.text("ca_file", outlook.http.ca_file);
-  table.text("header_file", header_file);
-  table.text("rows_field", outlook.fields.rows);
-  table.text("time_field", outlook.fields.time);
-  table.text("price_field", outlook.fields.price);
-  table.boolean("allow_http", transport.allow_http);
   table.finish();
   if (!table.ok() || table.value() == nullptr) return;
   if (table.has("url") && table.has("file")) {
@@ -327,12 +319,9 @@ void read_outlook(TomlTable table, OutlookSettings& outlook) {
   if (!outlook.file.empty()) {
     return keep_resolved(table, "file", outlook.file.view(), outlook.file);
   }
-  transport.has_header_file = !header_file.empty();
-  check_price_url(table, "url", outlook.http.url.view(), transport);
+  check_price_url(table, "url", outlook.http.url.view(), keys);
   keep_resolved(table, "ca_file", outlook.http.ca_file.view(), outlook.http.ca_file);
-  if (header_file.empty() || !table.ok()) return;
-  load_http_headers(table.resolved(header_file.view()).c_str(), outlook.http.headers,
-                    table.error());
+  load_headers(table, keys, outlook.http);
 }
 
 namespace {

@@ -58,26 +58,18 @@ void check_history_url(TomlTable& table, const PriceConfig& price) {
 }  // namespace
 
 void read_price(TomlTable table, PriceConfig& price) {
-  FixedText<255> header_file;
-  PriceTransportKeys transport;
+  PriceTransportKeys keys;
   table.require("url");
-  table.text("url", price.feed.http.url);
-  table.text("ca_file", price.feed.http.ca_file);
-  table.text("header_file", header_file);
-  table.text("rows_field", price.feed.fields.rows);
-  table.text("time_field", price.feed.fields.time);
-  table.text("price_field", price.feed.fields.price);
+  read_price_server(table, price.feed.http, price.feed.fields, keys);
   read_unit(table, price.feed.fields);
   read_history(table, price);
-  table.boolean("allow_http", transport.allow_http);
   table.finish();
   if (!table.ok()) return;
   const std::string_view url = price.feed.http.url.view();
   check_history_url(table, price);
-  transport.has_header_file = !header_file.empty();
-  check_price_url(table, "url", url, transport);
+  check_price_url(table, "url", url, keys);
   if (!price.history.url.empty())
-    check_price_url(table, "history_url", price.history.url.view(), transport);
+    check_price_url(table, "history_url", price.history.url.view(), keys);
   FixedText<255>& ca_file = price.feed.http.ca_file;
   keep_resolved(table, "ca_file", ca_file.view(), ca_file);
   if (url.starts_with("https://") && access(ca_file.c_str(), R_OK) != 0) {
@@ -85,9 +77,23 @@ void read_price(TomlTable table, PriceConfig& price) {
                               " cannot be read: install the package ca-certificates, "
                               "or set your own file");
   }
-  if (header_file.empty() || !table.ok()) return;
-  load_http_headers(table.resolved(header_file.view()).c_str(), price.feed.http.headers,
-                    table.error());
+  load_headers(table, keys, price.feed.http);
+}
+
+void read_price_server(TomlTable& table, HttpSettings& http, PriceFields& fields,
+                       PriceTransportKeys& keys) {
+  table.text("url", http.url);
+  table.text("ca_file", http.ca_file);
+  table.text("header_file", keys.header_file);
+  table.text("rows_field", fields.rows);
+  table.text("time_field", fields.time);
+  table.text("price_field", fields.price);
+  table.boolean("allow_http", keys.allow_http);
+}
+
+void load_headers(TomlTable& table, const PriceTransportKeys& keys, HttpSettings& http) {
+  if (keys.header_file.empty() || !table.ok()) return;
+  load_http_headers(table.resolved(keys.header_file.view()).c_str(), http.headers, table.error());
 }
 
 void check_price_url(TomlTable& table, std::string_view key, std::string_view url,
@@ -98,7 +104,7 @@ void check_price_url(TomlTable& table, std::string_view key, std::string_view ur
   }
   if (transport == UrlTransport::kSecure) return;
   // Also on loopback: while the server is down, any user can listen on its port.
-  if (keys.has_header_file) {
+  if (!keys.header_file.empty()) {
     return table.fail("header_file",
                       "has secrets, which are never sent over plain HTTP: use an https:// url, or "
                       "remove header_file");

@@ -26,15 +26,23 @@ void keep_resolved(TomlTable& table, std::string_view key, std::string_view path
   if (!kept.assign(table.resolved(path))) table.fail(key, "is too long a path");
 }
 
+// Keys of a price server, the same in [price] and [outlook].
+
 /// Operator's settings of the transport.
 struct PriceTransportKeys {
   bool allow_http = false;
-  bool has_header_file = false;  ///< secrets are sent with every request
+  FixedText<255> header_file;  ///< secrets that are sent with every request; empty = none
 };
+
+void read_price_server(TomlTable& table, HttpSettings& http, PriceFields& fields,
+                       PriceTransportKeys& keys);
 
 /// Rejects a malformed URL, plain HTTP that is not allowed, and secrets over plain HTTP.
 void check_price_url(TomlTable& table, std::string_view key, std::string_view url,
                      const PriceTransportKeys& keys);
+
+/// Loads the header file, if any, after all other checks.
+void load_headers(TomlTable& table, const PriceTransportKeys& keys, HttpSettings& http);
 
 struct TransportNote {
   bool is_open = false;  ///< prices could be forged in transit

@@ -1,5 +1,5 @@
-// Field descriptors of the log tables: a member of a struct, accessed as an integer, so that one loop
-// writes all members, and its place and name in each output. A member is named by its path:
+// Field descriptors of the log tables: a member of a struct, accessed as an integer, so that one
+// loop writes all members, and its place and name in each output. A member is named by its path:
 //   member<&CycleRecord::price, &PriceReport::fetch_us>()
 #pragma once
 
