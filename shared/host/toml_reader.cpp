@@ -69,13 +69,6 @@ void TomlTable::integer(std::string_view key, std::int64_t& value, std::int64_t 
   value = *found;
 }
 
-void TomlTable::integer(std::string_view key, std::int32_t& value, std::int64_t min,
-                        std::int64_t max) {
-  std::int64_t wide = value;
-  integer(key, wide, min, max);
-  value = static_cast<std::int32_t>(wide);
-}
-
 void TomlTable::number(std::string_view key, double& value, double min, double max) {
   const TomlValue* found = node(key);
   if (found == nullptr) return;

@@ -3,6 +3,8 @@
 // nothing; the first error is kept and later reads are harmless.
 #pragma once
 
+#include <concepts>
+#include <cstdint>
 #include <set>
 #include <span>
 #include <string>
@@ -35,7 +37,12 @@ class TomlTable {
   void require(std::string_view key);
   void boolean(std::string_view key, bool& value);
   void integer(std::string_view key, std::int64_t& value, std::int64_t min, std::int64_t max);
-  void integer(std::string_view key, std::int32_t& value, std::int64_t min, std::int64_t max);
+  template <std::integral T>
+  void integer(std::string_view key, T& value, std::int64_t min, std::int64_t max) {
+    auto wide = static_cast<std::int64_t>(value);
+    integer(key, wide, min, max);
+    value = static_cast<T>(wide);
+  }
   /// A decimal number times `scale`, rounded: 0.05 with scale 10000 becomes 500.
   void scaled(std::string_view key, std::int32_t& value, double scale, double min, double max);
   void number(std::string_view key, double& value, double min, double max);
@@ -47,8 +54,12 @@ class TomlTable {
   }
   /// Index of the text in `choices`.
   void choice(std::string_view key, int& index, std::span<const std::string_view> choices);
-  void choice(std::string_view key, int& index, std::initializer_list<std::string_view> choices) {
+  /// Enumerator, or false or true, at that index.
+  template <typename Value>
+  void choice(std::string_view key, Value& value, std::initializer_list<std::string_view> choices) {
+    int index = static_cast<int>(value);
     choice(key, index, std::span(choices.begin(), choices.size()));
+    value = static_cast<Value>(index);
   }
   /// Value of the key; null if absent, or of another type, which is an error.
   const std::string* text(std::string_view key);

@@ -40,20 +40,16 @@ void complete_link(TomlTable& table, BatteryLinkSettings& link, RegisterMap& map
 }  // namespace
 
 void read_link(TomlTable& table, BatteryLinkSettings& link) {
-  int transport = 0;
-  int parity = 0;
-  table.choice("transport", transport, {"tcp", "rtu"});
+  table.choice("transport", link.rtu, {"tcp", "rtu"});
   table.text("host", link.host);
   table.integer("port", link.port, 1, 65'535);
   table.text("device", link.device);
   table.integer("baud", link.baud, 1'200, 230'400);
-  table.choice("parity", parity, {"none", "even", "odd"});
+  table.choice("parity", link.parity, {"none", "even", "odd"});
   table.integer("stop_bits", link.stop_bits, 1, 2);
   table.integer("unit", link.unit, 0, 255);
   table.integer("response_timeout_ms", link.response_timeout_ms, 10, 30'000);
   static_cast<void>(table.table("units"));
-  link.rtu = transport == 1;
-  link.parity = static_cast<Parity>(parity);
 }
 
 void check_link(TomlTable& table, const BatteryLinkSettings& link) {
@@ -169,15 +165,13 @@ void read_meter(TomlTable table, BatteryConfig& battery, SiteConfig& site) {
 void read_limits(TomlTable table, SiteConfig& site) {
   if (table.value() == nullptr) return;
   FixedText<255> file;
-  int on_timeout = 0;
   table.require("file");
   table.text("file", file);
-  table.choice("on_timeout", on_timeout, {"release_limits", "idle"});
+  table.choice("on_timeout", site.settings.idle_after_timeout, {"release_limits", "idle"});
   table.finish();
   if (!table.ok()) return;
   keep_resolved(table, "file", file.view(), site.limit_file);
   site.settings.has_outside_limits = true;
-  site.settings.idle_after_timeout = on_timeout == 1;
 }
 
 namespace {

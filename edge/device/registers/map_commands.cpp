@@ -156,19 +156,14 @@ void read_write(TomlTable& table, const TomlValue& node, const MapDefaults& defa
   if (values == nullptr) return step.require("write");
   read_values(table, *values, map, write);
   if (!table.ok() || write.values.empty()) return finish_write(table, node, map, write);
+  write.function = default_function(map, write, defaults);
   if (has_options) {
-    std::int32_t function = default_function(map, write, defaults);
-    int read_back = 0;
-    step.integer("function", function, 6, 16);
-    step.choice("read_back", read_back, {"exact", "tolerance", "none"});
+    step.integer("function", write.function, 6, 16);
+    step.choice("read_back", write.read_back, {"exact", "tolerance", "none"});
     step.integer("tolerance", write.tolerance, 1, 1'000'000);
-    if (function != 6 && function != 16) step.fail("function", "must be 6 or 16");
-    write.function = static_cast<std::uint8_t>(function);
-    write.read_back = static_cast<ReadBack>(read_back);
+    if (write.function != 6 && write.function != 16) step.fail("function", "must be 6 or 16");
     if (write.read_back == ReadBack::kTolerance) step.require("tolerance");
     step.finish();
-  } else {
-    write.function = default_function(map, write, defaults);
   }
   finish_write(table, node, map, write);
   if (!sequence.writes.try_push_back(write)) table.fail_at(node, "exceeds the limit of 8 writes");

@@ -1,4 +1,6 @@
 // Map sections [map], [unit_groups], [sunspec] and [[point]].
+#include <algorithm>
+
 #include "edge/device/registers/map_reader.h"
 #include "shared/units_and_limits.h"
 
@@ -94,42 +96,35 @@ void read_unit_group(TomlTable& table, const RegisterMap& map, RegisterPoint& po
 
 void read_place(TomlTable& table, const MapDefaults& defaults, const RegisterMap& map,
                 RegisterPoint& point) {
-  std::int32_t read_function = defaults.read_function;
   read_model(table, map, point);
   const std::int32_t base = point.model >= 0 ? 0 : defaults.address_base;
   std::int32_t address = base;
   table.integer("address", address, base, 65'535);
-  table.integer("read_function", read_function, 3, 4);
+  point.read_function = defaults.read_function;
+  table.integer("read_function", point.read_function, 3, 4);
   read_unit_group(table, map, point);
   point.address = static_cast<std::uint16_t>(address - base);
-  point.read_function = static_cast<std::uint8_t>(read_function);
 }
 
 void read_type(TomlTable& table, const MapDefaults& defaults, RegisterPoint& point) {
-  int type = 0;
-  int word_order = defaults.word_order;
-  std::int32_t registers = 0;
-  std::int64_t mask = 0;
-  table.choice("type", type, {"u16", "s16", "u32", "s32", "u64", "f32", "text"});
-  table.choice("word_order", word_order, {"high_first", "low_first"});
-  point.type = static_cast<RegisterType>(type);
-  point.word_order = static_cast<WordOrder>(word_order);
-  registers = kTypes[type].registers == 0 ? 1 : kTypes[type].registers;
-  const std::int32_t most = point.type == RegisterType::kText ? kTextRegistersMax : registers;
-  table.integer("registers", registers, kTypes[type].registers == 0 ? 1 : registers, most);
-  table.integer("mask", mask, 1, 0xFFFF'FFFF);
-  if (mask != 0 && point.type != RegisterType::kU16 && point.type != RegisterType::kU32) {
+  point.word_order = defaults.word_order;
+  table.choice("type", point.type, {"u16", "s16", "u32", "s32", "u64", "f32", "text"});
+  table.choice("word_order", point.word_order, {"high_first", "low_first"});
+  const TypeFacts& type = kTypes[static_cast<int>(point.type)];
+  point.registers = std::max<std::uint8_t>(type.registers, 1);
+  const int most = point.type == RegisterType::kText ? kTextRegistersMax : point.registers;
+  table.integer("registers", point.registers, point.registers, most);
+  table.integer("mask", point.mask, 1, 0xFFFF'FFFF);
+  if (point.mask != 0 && point.type != RegisterType::kU16 && point.type != RegisterType::kU32) {
     table.fail("mask", "needs type \"u16\" or \"u32\"");
   }
-  point.registers = static_cast<std::uint8_t>(registers);
-  point.mask = static_cast<std::uint64_t>(mask);
   read_numbers(table, "not_implemented", INT64_MAX, point.not_implemented);
   if (table.has("not_implemented")) return;
-  const auto [sunspec, other_extreme] =
-      std::pair(kTypes[type].sunspec_not_implemented, kTypes[type].other_extreme);
-  if (defaults.not_implemented >= 1 && sunspec != 0) point.not_implemented.push_back(sunspec);
-  if (defaults.not_implemented == 2 && other_extreme != 0) {
-    point.not_implemented.push_back(other_extreme);
+  if (defaults.not_implemented >= 1 && type.sunspec_not_implemented != 0) {
+    point.not_implemented.push_back(type.sunspec_not_implemented);
+  }
+  if (defaults.not_implemented == 2 && type.other_extreme != 0) {
+    point.not_implemented.push_back(type.other_extreme);
   }
 }
 
@@ -139,12 +134,11 @@ void read_policy(TomlTable& table, RegisterPoint& point) {
   const auto name = point.name.view();
   const bool is_limit = name == "charge_power_max" || name == "discharge_power_max";
   constexpr std::int64_t kSocSlackE4 = 500;
-  int unknown = is_limit ? 1 : 0;
+  point.unknown_is_max = is_limit;
   point.slack = is_limit ? kMapValueLimit : name == "soc" ? kSocSlackE4 : 0;
   table.integer("slack", point.slack, 0, kMapValueLimit);
   table.integer("raw_at_max", point.raw_at_max, 1, 65'535);
-  table.choice("unknown", unknown, {"reject", "max"});
-  point.unknown_is_max = unknown == 1;
+  table.choice("unknown", point.unknown_is_max, {"reject", "max"});
 }
 
 void read_scale(TomlTable& table, const RegisterMap& map, RegisterPoint& point) {
@@ -189,7 +183,6 @@ void read_names(TomlTable& table, std::string_view key, bool bits, RegisterMap& 
 void read_point(TomlTable& table, const MapDefaults& defaults, RegisterMap& map) {
   RegisterPoint point;
   FixedText<15> unit;  // documentation only
-  int storage = 0;
   table.require("name");
   table.require("address");
   table.text("name", point.name);
@@ -197,11 +190,10 @@ void read_point(TomlTable& table, const MapDefaults& defaults, RegisterMap& map)
   read_place(table, defaults, map, point);
   read_type(table, defaults, point);
   read_scale(table, map, point);
-  table.choice("storage", storage, {"volatile", "eeprom"});
+  table.choice("storage", point.eeprom, {"volatile", "eeprom"});
   table.integer("max_age_s", point.max_age_s, 0, kSecondsPerDay);
   table.boolean("optional", point.optional);
   table.boolean("private", point.is_private);
-  point.eeprom = storage == 1;
   if (point.type != RegisterType::kText) {
     table.require("min");
     table.require("max");
@@ -224,16 +216,13 @@ void read_map_header(TomlTable& root, RegisterMap& map, MapDefaults& defaults) {
   for (const std::string_view key : {"name", "unit"}) table.require(key);
   FixedText<255> description;  // description and one_client are documentation only
   bool one_client = false;
-  int parity = 0;
-  int kind = 0;
-  table.choice("kind", kind, {"battery", "meter"});
-  map.is_meter = kind == 1;
+  table.choice("kind", map.is_meter, {"battery", "meter"});
   table.text("name", map.name);
   table.text("description", description);
   table.integer("unit", map.unit, 0, 255);
   table.integer("port", map.port, 1, 65'535);
   table.integer("baud", map.baud, 1'200, 256'000);
-  table.choice("parity", parity, {"none", "even", "odd"});
+  table.choice("parity", map.parity, {"none", "even", "odd"});
   table.integer("stop_bits", map.stop_bits, 1, 2);
   table.integer("connect_delay_ms", map.connect_delay_ms, 0, 10'000);
   table.integer("minimum_gap_ms", map.minimum_gap_ms, 0, 10'000);
@@ -246,7 +235,6 @@ void read_map_header(TomlTable& root, RegisterMap& map, MapDefaults& defaults) {
   table.integer("address_base", defaults.address_base, 0, 1);
   table.choice("word_order", defaults.word_order, {"high_first", "low_first"});
   table.choice("not_implemented", defaults.not_implemented, {"none", "sunspec", "extremes"});
-  map.parity = static_cast<Parity>(parity);
   if (defaults.write_function != 6 && defaults.write_function != 16) {
     table.fail("write_function", "must be 6 or 16");
   }

@@ -14,10 +14,10 @@ inline constexpr std::int64_t kMapValueLimit = 5'000'000'000;
 
 /// Defaults of [map] for all points and writes.
 struct MapDefaults {
-  std::int32_t read_function = 3;
+  std::uint8_t read_function = 3;
   std::int32_t write_function = 16;
   std::int32_t address_base = 0;
-  int word_order = 0;
+  WordOrder word_order = WordOrder::kHighFirst;
   int not_implemented = 0;  ///< by type: 0 = none, 1 = SunSpec's raw value, 2 = both extremes
 };
 

@@ -113,11 +113,10 @@ void read_map_limits(TomlTable& root, RegisterMap& map) {
 
 void read_map_watchdog(TomlTable& root, RegisterMap& map) {
   TomlTable table = root.child("watchdog");
-  int kind = 0;
   RegisterName remaining;
   table.require("kind");
-  table.choice("kind", kind, {"none", "duration", "revert_timer", "heartbeat", "rewrite"});
-  map.watchdog.kind = static_cast<Watchdog::Kind>(kind);
+  table.choice("kind", map.watchdog.kind,
+               {"none", "duration", "revert_timer", "heartbeat", "rewrite"});
   if (map.watchdog.kind != Watchdog::Kind::kNone) {
     table.require("duration_s");
     table.require("refresh_s");
