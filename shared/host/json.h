@@ -132,6 +132,11 @@ struct JsonMember {
   mutable Json value;  ///< mutable, to move from an initializer list
 };
 
+/// `value`, or null if it does not exist.
+inline Json value_or_null(bool exists, Json value) {
+  return exists ? std::move(value) : Json::null();
+}
+
 /// Answer of a server: does not exist unless `text` is one JSON value, where NaN and Infinity, as
 /// Python and JavaScript write them, count as null.
 Json parse_answer(std::string_view text);

@@ -70,13 +70,11 @@ struct Result {
 };
 
 void print_json(const RegisterMap& map, const Result& result) {
-  Json points = Json::list();
-  for (const PointVerdict& point : result.points) points.add(json_of(point));
   Json json = Json::object({{"map", map.name.view()},
                             {"variant", map.variant.view()},
                             {"exchanges", result.exchanges},
                             {"findings", result.findings},
-                            {"points", std::move(points)}});
+                            {"points", Json::list_from(result.points, json_of)}});
   if (!result.unjudged.empty()) json.set("unjudged", result.unjudged);
   std::puts(json.line().c_str());
 }

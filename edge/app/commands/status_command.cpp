@@ -315,24 +315,19 @@ void print_json(const EdgeConfig& config, const PublishedStatus& published, cons
   const bool is_known = published.unknown.empty() && published.status.has_value();
   Json status = is_known ? json_of(*published.status) : Json::object();
   if (!published.unknown.empty()) status.set("unknown", published.unknown);
-  Json alerts = Json::list();
-  Json lines = Json::list();
-  for (const HealthAlert& alert : health.alerts) {
-    alerts.add(Json::object({{"code", alert.code}, {"line", alert.line}}));
-    lines.add(alert.line);
-  }
+  const auto alert_json = [](const HealthAlert& alert) {
+    return Json::object({{"code", alert.code}, {"line", alert.line}});
+  };
   status.set("health", health_name(health.level));
-  status.set("alerts", std::move(alerts));
-  status.set("health_reasons", std::move(lines));
+  status.set("alerts", Json::list_from(health.alerts, alert_json));
+  status.set("health_reasons", Json::list_from(health.alerts, &HealthAlert::line));
   if (!config.contact.view().empty()) status.set("contact", config.contact.view());
   if (is_known) status.set("retrain", retraining_note(config, published.status->identity));
   NextDecision next;
   if (health.level != HealthLevel::kNotRunning && find_next(config, next)) {
     status.set("next", next_decision_json(next));
   }
-  Json no_effect = Json::list();
-  for (const std::string& key : keys_without_effect(config)) no_effect.add(key);
-  status.set("no_effect", std::move(no_effect));
+  status.set("no_effect", Json::list_from(keys_without_effect(config)));
   if (!update.empty()) status.set("update", update);
   std::fputs(status.text().c_str(), stdout);
 }

@@ -107,20 +107,18 @@ NotifierState read_notifier_state(const std::vector<std::string>& paths,
 }
 
 std::string notifier_state_text(const NotifierState& state) {
-  Json alerts = Json::list();
-  Json pending = Json::list();
-  for (const ToldAlert& alert : state.alerts) {
+  const auto told_json = [](const ToldAlert& alert) {
     Json json = alert_json(alert);
     json.set("seen_utc", utc_text(alert.seen_utc_s).view());
     json.set("is_told", alert.is_told);
-    alerts.add(std::move(json));
-  }
-  for (const Message& message : state.pending) pending.add(event_json("", message));
+    return json;
+  };
+  const auto pending_json = [](const Message& message) { return event_json("", message); };
   const std::string text = Json::object({{"version", kVersion},
                                          {"number", state.number},
                                          {"day", state.day},
-                                         {"alarms", std::move(alerts)},
-                                         {"pending", std::move(pending)}})
+                                         {"alarms", Json::list_from(state.alerts, told_json)},
+                                         {"pending", Json::list_from(state.pending, pending_json)}})
                                .text();
   const std::string body = text.substr(0, text.rfind("\n}"));
   return body + std::string(checksum_end(body, kJsonChecksum).view());

@@ -131,15 +131,13 @@ std::string Earnings::csv() const {
 }
 
 Json Earnings::json() const {
-  Json days = Json::list();
-  for (const DayAccount& day : days_) days.add(day_json(day));
   Json all = Json::object();
   set_columns(all, together_);
   all.set("stored_kwh", Decimals{together_.stored_kwh(), 3});
   all.set("stored_eur", Decimals{together_.stored_eur(), 4});
   all.set("earned_at_equal_soc_eur", Decimals{together_.earned_eur() + together_.stored_eur(), 4});
   all.set("stops", stops_json(together_));
-  all.set("days", std::move(days));
+  all.set("days", Json::list_from(days_, day_json));
   return all;
 }
 

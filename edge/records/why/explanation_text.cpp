@@ -146,14 +146,12 @@ void add_evidence(const Explanation& explanation, std::string& text) {
 }
 
 Json evidence_json(const Explanation& explanation) {
-  Json list = Json::list();
-  for (const TripEvidence& cycle : explanation.evidence) {
-    list.add(Json::object({{"utc", utc_text(cycle.utc_s).view()},
-                           {"ordered_power_w", cycle.ordered_power_w},
-                           {"measured_power_w", cycle.measurement.power_w},
-                           {"soc_percent", Decimals{percent(cycle.measurement.soc_e4), 2}}}));
-  }
-  return list;
+  return Json::list_from(explanation.evidence, [](const TripEvidence& cycle) {
+    return Json::object({{"utc", utc_text(cycle.utc_s).view()},
+                         {"ordered_power_w", cycle.ordered_power_w},
+                         {"measured_power_w", cycle.measurement.power_w},
+                         {"soc_percent", Decimals{percent(cycle.measurement.soc_e4), 2}}});
+  });
 }
 
 Json outlook_json(const OutlookReport& outlook) {
@@ -183,15 +181,13 @@ std::string price_margins_text(const Margins& at) {
 }
 
 Json margins_json(const Margins& at) {
-  const auto soc_or_null = [](bool exists, std::int32_t soc_e4) {
-    return exists ? Json(Decimals{percent(soc_e4), 2}) : Json::null();
-  };
   return Json::object(
       {{"charge_up_to_eur_per_mwh", Decimals{eur_of(at.charge_up_to_centi), 2}},
        {"discharge_from_eur_per_mwh", Decimals{eur_of(at.discharge_from_centi), 2}},
-       {"charge_up_to_soc_percent", soc_or_null(at.charges_at_some_soc, at.charge_up_to_soc_e4)},
+       {"charge_up_to_soc_percent",
+        value_or_null(at.charges_at_some_soc, Decimals{percent(at.charge_up_to_soc_e4), 2})},
        {"discharge_from_soc_percent",
-        soc_or_null(at.discharges_at_some_soc, at.discharge_from_soc_e4)}});
+        value_or_null(at.discharges_at_some_soc, Decimals{percent(at.discharge_from_soc_e4), 2})}});
 }
 
 std::string explanation_text(const Explanation& explanation, const ControlSettings& settings) {
@@ -217,47 +213,43 @@ Json explanation_json(const Explanation& explanation, const ControlSettings& set
   const CycleRecord& record = explanation.record;
   const GuardSettings& guard = settings.guard;
   const bool has_price = record.price.has_row;
-  Json json = Json::object({{"utc", utc_text(record.utc_s).view()},
-                            {"local", local_text(record.utc_s).view()},
-                            {"cycle", record.cycle},
-                            {"mode", mode_name(record.mode)},
-                            {"ordered_power_w", record.ordered_power_w},
-                            {"reason", reason_name(record.reason)},
-                            {"meaning", info_of(record.reason).meaning},
-                            {"remedy", info_of(record.reason).look_at},
-                            {"since_utc", utc_text(explanation.since_utc_s).view()},
-                            {"cycles_with_reason", explanation.cycles},
-                            {"ends", what_ends(record, settings)}});
-  json.set("student",
-           record.has_student_action ? Json(action_name(record.student_action)) : Json::null());
-  json.set(
-      "price_eur_per_mwh",
-      has_price ? Json(Decimals{eur_of(record.price.price_centi_eur_per_mwh), 2}) : Json::null());
-  json.set("price_age_s", has_price ? Json(record.price_age_s) : Json::null());
-  json.set("soc_percent", record.has_measurement
-                              ? Json(Decimals{percent(record.measurement.soc_e4), 2})
-                              : Json::null());
-  json.set("level_eur_per_mwh",
-           record.context_class == 0
-               ? Json::null()
-               : Json(Decimals{eur_of(record.price_level.centi_eur_per_mwh()), 2}));
-  json.set("context_class", record.context_class);
-  json.set("outlook", outlook_json(record.outlook));
-  json.set("margins", explanation.has_margins ? margins_json(explanation.margins) : Json::null());
-  json.set("is_other_student", explanation.is_other_student);
-  json.set("evidence", evidence_json(explanation));
-  json.set(
-      "thresholds",
+  Json thresholds =
       Json::object({{"charge_at_or_below_eur_per_mwh", guard.thresholds.low_eur_per_mwh},
-                    {"discharge_at_or_above_eur_per_mwh", guard.thresholds.high_eur_per_mwh}}));
-  json.set("limits",
-           Json::object({{"soc_max_percent", Decimals{percent(guard.soc_max_e4), 2}},
-                         {"soc_min_percent", Decimals{percent(guard.soc_min_e4), 2}},
-                         {"reserve_soc_percent", Decimals{percent(record.reserve_soc_e4), 2}},
-                         {"full_cycles_today",
-                          Decimals{record.throughput.soc_moved_e4 / (2.0 * kSocFullE4), 4}},
-                         {"reversals_in_hour", record.reversals.in_hour}}));
-  return json;
+                    {"discharge_at_or_above_eur_per_mwh", guard.thresholds.high_eur_per_mwh}});
+  Json limits = Json::object(
+      {{"soc_max_percent", Decimals{percent(guard.soc_max_e4), 2}},
+       {"soc_min_percent", Decimals{percent(guard.soc_min_e4), 2}},
+       {"reserve_soc_percent", Decimals{percent(record.reserve_soc_e4), 2}},
+       {"full_cycles_today", Decimals{record.throughput.soc_moved_e4 / (2.0 * kSocFullE4), 4}},
+       {"reversals_in_hour", record.reversals.in_hour}});
+  return Json::object(
+      {{"utc", utc_text(record.utc_s).view()},
+       {"local", local_text(record.utc_s).view()},
+       {"cycle", record.cycle},
+       {"mode", mode_name(record.mode)},
+       {"ordered_power_w", record.ordered_power_w},
+       {"reason", reason_name(record.reason)},
+       {"meaning", info_of(record.reason).meaning},
+       {"remedy", info_of(record.reason).look_at},
+       {"since_utc", utc_text(explanation.since_utc_s).view()},
+       {"cycles_with_reason", explanation.cycles},
+       {"ends", what_ends(record, settings)},
+       {"student", value_or_null(record.has_student_action, action_name(record.student_action))},
+       {"price_eur_per_mwh",
+        value_or_null(has_price, Decimals{eur_of(record.price.price_centi_eur_per_mwh), 2})},
+       {"price_age_s", value_or_null(has_price, record.price_age_s)},
+       {"soc_percent",
+        value_or_null(record.has_measurement, Decimals{percent(record.measurement.soc_e4), 2})},
+       {"level_eur_per_mwh",
+        value_or_null(record.context_class != 0,
+                      Decimals{eur_of(record.price_level.centi_eur_per_mwh()), 2})},
+       {"context_class", record.context_class},
+       {"outlook", outlook_json(record.outlook)},
+       {"margins", value_or_null(explanation.has_margins, margins_json(explanation.margins))},
+       {"is_other_student", explanation.is_other_student},
+       {"evidence", evidence_json(explanation)},
+       {"thresholds", std::move(thresholds)},
+       {"limits", std::move(limits)}});
 }
 
 }  // namespace bess

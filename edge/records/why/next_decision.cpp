@@ -59,10 +59,9 @@ std::string ahead_text(const NextDecision& next) {
   }
   if (next.full_charge_in_days < 0) return text;
   text += text.empty() ? "" : ", ";
-  return text + (next.full_charge_in_days == 0
-                     ? std::string("a full charge is due")
-                     : formatted("a full charge in %d day%s", next.full_charge_in_days,
-                                 next.full_charge_in_days == 1 ? "" : "s"));
+  if (next.full_charge_in_days == 0) return text + "a full charge is due";
+  const auto days = static_cast<std::size_t>(next.full_charge_in_days);
+  return text + "a full charge in " + counted(days, "day");
 }
 
 }  // namespace
@@ -123,22 +122,20 @@ std::string next_decision_metrics(const NextDecision& next) {
 }
 
 Json next_decision_json(const NextDecision& next) {
-  Json reserves = Json::list();
-  for (const ReserveChange& change : next.reserve_changes) {
-    reserves.add(Json::object({{"utc", utc_text(change.utc_s).view()},
-                               {"soc_percent", Decimals{change.soc_e4 / 100.0, 2}}}));
-  }
-  Json json = Json::object({{"utc", utc_text(next.utc_s).view()},
-                            {"local", local_text(next.utc_s).view()},
-                            {"reason", next.reason},
-                            {"ends", next.ends}});
-  json.set("action", next.has_action ? Json(action_name(next.action)) : Json::null());
-  json.set("power_w", next.has_action ? Json(next.power_w) : Json::null());
-  json.set("margins", next.has_action ? margins_json(next.margins) : Json::null());
-  json.set("reserve_changes", std::move(reserves));
-  json.set("full_charge_in_days",
-           next.full_charge_in_days < 0 ? Json::null() : Json(next.full_charge_in_days));
-  return json;
+  const auto change_json = [](const ReserveChange& change) {
+    return Json::object({{"utc", utc_text(change.utc_s).view()},
+                         {"soc_percent", Decimals{change.soc_e4 / 100.0, 2}}});
+  };
+  return Json::object({{"utc", utc_text(next.utc_s).view()},
+                       {"local", local_text(next.utc_s).view()},
+                       {"reason", next.reason},
+                       {"ends", next.ends},
+                       {"action", value_or_null(next.has_action, action_name(next.action))},
+                       {"power_w", value_or_null(next.has_action, next.power_w)},
+                       {"margins", value_or_null(next.has_action, margins_json(next.margins))},
+                       {"reserve_changes", Json::list_from(next.reserve_changes, change_json)},
+                       {"full_charge_in_days",
+                        value_or_null(next.full_charge_in_days >= 0, next.full_charge_in_days)}});
 }
 
 }  // namespace bess
