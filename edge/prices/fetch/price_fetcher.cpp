@@ -86,15 +86,9 @@ PriceAnswer PriceSource::fetch_page(const char* url, std::int32_t timeout_ms) co
 }
 
 PublishedHistory find_history(const EdgeConfig& config, const PriceSource& source) {
-  PublishedHistory found{.is_done = true};
-  if (config.price.history.hours == 0) return found;
-  const auto history =
-      std::make_unique<PriceHistory>(config.price.history.hours, utc_seconds(config.clock));
-  found.status = fetch_history(source, config.price.feed, config.price.history, source, *history);
-  found.hours = history->hours_covered();
-  found.rows = history->rows();
-  found.level = history->level();
-  return found;
+  return fetch_history(config.price, config.clock,
+                       std::bind_front(&PriceSource::fetch_page, &source),
+                       std::bind_front(&PriceSource::stop_requested, &source));
 }
 
 void PriceFetcher::run(const std::function<bool()>& is_over) {

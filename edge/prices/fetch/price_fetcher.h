@@ -60,12 +60,8 @@ class PriceSource {
   Answer ask(UnitWatch& watch) const { return ask(watch, config_.price.feed.http.url.c_str()); }
   /// First request, with more rows if the server has pages, so that a wrong unit shows early.
   Answer ask_first(UnitWatch& watch) const;
-  /// Interface of history_pages.h.
+  /// For fetch_history.
   [[nodiscard]] PriceAnswer fetch_page(const char* url, std::int32_t timeout_ms) const;
-
-  // Clock interface of fetch_history.
-  [[nodiscard]] static std::int64_t monotonic_ns() { return clock_ns(CLOCK_MONOTONIC); }
-  [[nodiscard]] const ScaledClock& scaled() const { return config_.clock; }
   [[nodiscard]] bool stop_requested() const { return stop_.stop_requested(); }
 
  private:

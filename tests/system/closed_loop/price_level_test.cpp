@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "edge/core/control/level_start.h"
-#include "edge/prices/fetch/history_pages.h"
+#include "edge/core/control/price_history.h"
 #include "edge/prices/fetch/price_fetcher.h"
 #include "edge/prices/fetch/price_json.h"
 #include "edge/records/log/ring_log.h"
@@ -257,51 +257,43 @@ MinuteSeries four_days() {
   return series;
 }
 
-/// In real time, which is late enough for three days of rows.
-struct ServerClock {
-  ScaledClock scaled_clock;
-  [[nodiscard]] const ScaledClock& scaled() const { return scaled_clock; }
-  static std::int64_t monotonic_ns() { return clock_ns(CLOCK_MONOTONIC); }
-  static bool stop_requested() { return false; }
-};
-
 TEST(PriceLevelHistory, FetchedFromBessSimEqualsTheWorkstations) {
   MinuteSeries series = four_days();
   disturb(series, 5);
   const std::int64_t now_utc_s = utc_of("2023-03-27T09:41:30Z");
-  const ServerClock clock{
-      {.anchor_monotonic_ns = clock_ns(CLOCK_MONOTONIC), .anchor_utc_s = now_utc_s, .scale = 1}};
+  // In real time, which is late enough for three days of rows.
+  const ScaledClock clock{
+      .anchor_monotonic_ns = clock_ns(CLOCK_MONOTONIC), .anchor_utc_s = now_utc_s, .scale = 1};
   const MarketView view(series, 0);
   MarketServerSettings server_settings;
   server_settings.port = 0;
-  MarketServer server(server_settings, view, clock.scaled());
+  MarketServer server(server_settings, view, clock);
   std::thread serving([&server] { server.run(); });
   const std::string root =
       "http://127.0.0.1:" + std::to_string(server.port()) + "/api/explore/v2.1/catalog/datasets/";
   const std::string order = "/records?order_by=datetime%20desc&limit=20&timezone=UTC";
   const auto config = std::make_unique<EdgeConfig>();
-  config->clock = clock.scaled();
-  PriceFeedSettings& price = config->price.feed;
-  price.http.url = FixedText<511>(root + "ods161" + order);
-  HistorySettings& settings = config->price.history;
-  settings.url = FixedText<511>(root + "ods133" + order);
-  const PriceSource source(*config, {});
-  PriceHistory history(settings.hours, now_utc_s);
-  EXPECT_EQ(fetch_history(source, price, settings, source, history), Status::kOk);
+  config->clock = clock;
+  config->price.feed.http.url = FixedText<511>(root + "ods161" + order);
+  config->price.history.url = FixedText<511>(root + "ods133" + order);
+  const PublishedHistory history = find_history(*config, PriceSource(*config, {}));
+  EXPECT_EQ(history.status, Status::kOk);
   server.stop();
   serving.join();
-  EXPECT_EQ(history.hours_covered(), 72);
+  EXPECT_EQ(history.hours, 72);
 
   // The workstation has the same three days only.
-  MinuteSeries known{.start_utc_s = history.first_minute_utc_s(), .indicative = {}, .settled = {}};
+  MinuteSeries known{.start_utc_s = PriceHistory(72, now_utc_s).first_minute_utc_s(),
+                     .indicative = {},
+                     .settled = {}};
   const auto begin = static_cast<std::ptrdiff_t>((known.start_utc_s - series.start_utc_s) / 60);
   const std::ptrdiff_t end = begin + 72 * 60 + kMinutesPerStep;  // the last tick's step is complete
   known.indicative.assign(series.indicative.begin() + begin, series.indicative.begin() + end);
   known.settled.assign(static_cast<std::size_t>(end - begin), 50.0);
   const MarketSteps market = make_market_steps(known, MarketOptions{});
   EXPECT_EQ(market.steps.back().utc_s, utc_of("2023-03-27T09:40:00Z"));
-  EXPECT_EQ(market.steps.back().level_centi_eur_per_mwh, history.level().centi_eur_per_mwh());
-  EXPECT_EQ(levels_by_hand(known).at(market.steps.back().utc_s), history.level());
+  EXPECT_EQ(market.steps.back().level_centi_eur_per_mwh, history.level.centi_eur_per_mwh());
+  EXPECT_EQ(levels_by_hand(known).at(market.steps.back().utc_s), history.level);
 }
 
 }  // namespace

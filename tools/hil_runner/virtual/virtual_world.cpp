@@ -3,6 +3,7 @@
 #include <pthread.h>
 #include <signal.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -195,14 +196,9 @@ RestoredState VirtualWorld::restore_state() const {
 }
 
 PublishedHistory VirtualWorld::find_history() {
-  const auto history =
-      std::make_unique<PriceHistory>(price_.history.hours, environment_.time.edge_utc_s());
-  const Status status = fetch_history(prices_, price_.feed, price_.history, clock_, *history);
-  return {.is_done = true,
-          .hours = history->hours_covered(),
-          .rows = history->rows(),
-          .status = status,
-          .level = history->level()};
+  return fetch_history(price_, clock_.scaled(),
+                       std::bind_front(&VirtualPrices::fetch_page, &prices_),
+                       std::bind_front(&EdgeClock::stop_requested, &clock_));
 }
 
 void VirtualWorld::cycle_done(const CycleRecord&) {
