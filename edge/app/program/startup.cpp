@@ -93,14 +93,14 @@ std::string eur_text(std::int32_t centi) {
 
 std::string why_no_more(const LevelStartReport& level_report) {
   if (level_report.hours_wanted == 0) return "history_hours = 0";
-  if (level_report.status == Status::kOk) return "no more rows at the server";
-  return std::string(price_status_text(level_report.status));
+  if (level_report.history.status == Status::kOk) return "no more rows at the server";
+  return std::string(price_status_text(level_report.history.status));
 }
 
 std::string history_note(const LevelStartReport& level_report) {
-  std::string text = "from " + std::to_string(level_report.rows) + " rows of the last " +
-                     std::to_string(level_report.hours) + " h";
-  if (level_report.hours >= level_report.hours_wanted) return text;
+  std::string text = "from " + std::to_string(level_report.history.rows) + " rows of the last " +
+                     std::to_string(level_report.history.hours) + " h";
+  if (level_report.history.hours >= level_report.hours_wanted) return text;
   return text + " instead of " + std::to_string(level_report.hours_wanted) +
          " h: " + why_no_more(level_report);
 }

@@ -53,13 +53,11 @@ bool check_student();
 /// "month", or quantity and limits of the classes.
 std::string context_note(const ContextClasses& context);
 
-/// Source of the starting price level. The history fields are valid only after a request.
+/// Source of the starting price level.
 struct LevelStartReport {
   LevelStart start{};
   int hours_wanted = 0;
-  int hours = 0;  ///< covered by the rows
-  int rows = 0;
-  Status status = Status::kOk;  ///< what ended or prevented the request
+  PublishedHistory history{};  ///< status: what ended or prevented the request
 };
 
 std::string level_start_text(const LevelStartReport& level_report);
@@ -87,17 +85,15 @@ LevelStartReport starting_level(const EdgeConfig& config, const PriceLevel& logg
                                 Status price_server_status, World& world) {
   const std::int64_t now_utc_s = utc_seconds(world.clock());
   LevelStartReport level_report{.hours_wanted = config.price.history.hours,
-                                .status = price_server_status};
+                                .history = {.status = price_server_status}};
   const auto fetch = [&]() -> PriceLevel {
     // A server that has not answered would only delay the start.
     const bool has_answered =
         price_server_status == Status::kOk || price_server_status == Status::kNoRow;
-    if (level_report.hours_wanted == 0 || !has_answered) return {};
-    const PublishedHistory history = world.find_history();
-    level_report.status = history.status;
-    level_report.hours = history.hours;
-    level_report.rows = history.rows;
-    return history.level;
+    if (level_report.hours_wanted != 0 && has_answered) {
+      level_report.history = world.find_history();
+    }
+    return level_report.history.level;
   };
   level_report.start = find_start_level(student_context().kind, logged, now_utc_s,
                                         config.price.level_start_centi_eur_per_mwh, fetch);

@@ -4,7 +4,6 @@
 #include <signal.h>
 
 #include <functional>
-#include <memory>
 #include <optional>
 
 #include "edge/core/control/policy.h"

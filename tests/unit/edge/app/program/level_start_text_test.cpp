@@ -21,15 +21,13 @@ TEST(LevelNote, NamesTheSourceOfTheLevel) {
   using enum LevelSource;
   const NoteCase cases[] = {
       {{.start = {kLevel, kLog}, .hours_wanted = 72}, "-84.20"},
-      {{.start = {kLevel, kHistory}, .hours_wanted = 72, .hours = 72, .rows = 4'312},
+      {{.start = {kLevel, kHistory}, .hours_wanted = 72, .history = {.hours = 72, .rows = 4'312}},
        "-84.20 4312 72"},
-      {{.start = {kLevel, kHistory}, .hours_wanted = 72, .hours = 7, .rows = 400},
+      {{.start = {kLevel, kHistory}, .hours_wanted = 72, .history = {.hours = 7, .rows = 400}},
        "-84.20 400 7 72"},
       {{.start = {kLevel, kHistory},
         .hours_wanted = 72,
-        .hours = 40,
-        .rows = 2'400,
-        .status = Status::kTimeout},
+        .history = {.hours = 40, .rows = 2'400, .status = Status::kTimeout}},
        "-84.20 2400 40 72"},
       {{.start = {kLevel, kSetting}}, "-84.20 level_start_eur_per_mwh history_hours"},
       {{.hours_wanted = 0}, "history_hours"},
