@@ -20,24 +20,6 @@ constexpr TypeFacts kTypes[] = {{"u16", 1, 0xFFFF, 0},      {"s16", 1, 0x8000, 0
                                 {"u64", 4, UINT64_MAX, 0},  {"f32", 2, 0x7FC0'0000, 0},
                                 {"text", 0, 0, 0}};
 
-/// Reads a list of numbers such as models = [124, 704].
-template <typename T, int kCapacity>
-void read_numbers(TomlTable& table, std::string_view key, std::int64_t max,
-                  StaticVector<T, kCapacity>& out) {
-  const TomlArray* list = table.array(key);
-  if (list == nullptr) return;
-  for (const TomlValue& item : *list) {
-    const auto* number = item.as<std::int64_t>();
-    if (number == nullptr || *number < 0 || *number > max) {
-      return table.fail_at(
-          item, std::string(key) + " must hold whole numbers from 0 to " + std::to_string(max));
-    }
-    if (!out.try_push_back(static_cast<T>(*number))) {
-      return table.fail(key, "holds more than " + std::to_string(kCapacity) + " numbers");
-    }
-  }
-}
-
 void read_unit_groups(TomlTable& root, RegisterMap& map) {
   TomlTable groups = root.child("unit_groups");
   if (groups.value() == nullptr) return;
@@ -54,8 +36,8 @@ void read_sunspec(TomlTable& root, RegisterMap& map) {
   TomlTable table = root.child("sunspec");
   if (table.value() == nullptr) return;
   table.require("models");
-  read_numbers(table, "models", 65'534, map.models);
-  read_numbers(table, "bases", 65'000, map.model_bases);
+  read_numbers(table, "models", 0, 65'534, map.models);
+  read_numbers(table, "bases", 0, 65'000, map.model_bases);
   table.finish();
   if (map.model_bases.empty()) {
     constexpr std::uint16_t kUsualBases[] = {40'000, 50'000, 0};
@@ -118,7 +100,7 @@ void read_type(TomlTable& table, const MapDefaults& defaults, RegisterPoint& poi
   if (point.mask != 0 && point.type != RegisterType::kU16 && point.type != RegisterType::kU32) {
     table.fail("mask", "needs type \"u16\" or \"u32\"");
   }
-  read_numbers(table, "not_implemented", INT64_MAX, point.not_implemented);
+  read_numbers(table, "not_implemented", 0, INT64_MAX, point.not_implemented);
   if (table.has("not_implemented")) return;
   if (defaults.not_implemented >= 1 && type.sunspec_not_implemented != 0) {
     point.not_implemented.push_back(type.sunspec_not_implemented);
@@ -169,11 +151,11 @@ void read_names(TomlTable& table, std::string_view key, bool bits, RegisterMap& 
     named.point = static_cast<std::int8_t>(map.points.size() - 1);
     named.is_bit = bits;
     const auto* number = node.as<std::int64_t>();
-    if (number == nullptr || *number < -kMapValueLimit || *number > (bits ? 31 : kMapValueLimit)) {
+    if (number == nullptr || *number < (bits ? 0 : -kMapValueLimit) ||
+        *number > (bits ? 31 : kMapValueLimit)) {
       return table.fail_at(
           node, std::string(key) + " must hold numbers" + (bits ? " of bits, 0 to 31" : ""));
     }
-    if (bits && *number < 0) return table.fail_at(node, "a bit number is not negative");
     named.value = bits ? std::int64_t{1} << *number : *number;
     if (!named.name.assign(name)) return table.fail_at(node, "name is longer than 23 characters");
     if (!map.names.try_push_back(named)) return table.fail(key, "exceeds the limit of 96 names");

@@ -4,22 +4,6 @@
 namespace bess {
 namespace {
 
-template <int kCapacity>
-void read_codes(TomlTable& table, std::string_view key,
-                StaticVector<std::uint8_t, kCapacity>& out) {
-  const TomlArray* list = table.array(key);
-  if (list == nullptr) return;
-  for (const TomlValue& item : *list) {
-    const auto* number = item.as<std::int64_t>();
-    if (number == nullptr || *number < 1 || *number > 255) {
-      return table.fail_at(item, std::string(key) + " must hold exception codes, 1 to 255");
-    }
-    if (!out.try_push_back(static_cast<std::uint8_t>(*number))) {
-      return table.fail(key, "holds too many codes");
-    }
-  }
-}
-
 void read_assignments(TomlTable& table, std::string_view key, const RegisterMap& map, auto& out) {
   using Assignment = SimulatorHints::Assignment;
   for_each_text(table, key, [&](std::string_view text, const TomlValue& at) {
@@ -71,8 +55,8 @@ void read_map_policies(TomlTable& root, RegisterMap& map) {
   }
   writes.finish();
   TomlTable exceptions = root.child("exceptions");
-  read_codes(exceptions, "retry", map.exceptions.retry);
-  read_codes(exceptions, "not_permitted", map.exceptions.not_permitted);
+  read_numbers(exceptions, "retry", 1, 255, map.exceptions.retry);
+  read_numbers(exceptions, "not_permitted", 1, 255, map.exceptions.not_permitted);
   exceptions.finish();
   read_response(root, map);
   TomlTable test = root.child("commissioning");

@@ -67,6 +67,24 @@ void for_each_text(TomlTable& table, std::string_view key, Function read) {
   }
 }
 
+/// Reads a list of numbers such as models = [124, 704].
+template <typename T, int kCapacity>
+void read_numbers(TomlTable& table, std::string_view key, std::int64_t min, std::int64_t max,
+                  StaticVector<T, kCapacity>& out) {
+  const TomlArray* list = table.array(key);
+  if (list == nullptr) return;
+  for (const TomlValue& item : *list) {
+    const auto* number = item.as<std::int64_t>();
+    if (number == nullptr || *number < min || *number > max) {
+      return table.fail_at(item, std::string(key) + " must hold whole numbers from " +
+                                     std::to_string(min) + " to " + std::to_string(max));
+    }
+    if (!out.try_push_back(static_cast<T>(*number))) {
+      return table.fail(key, "holds more than " + std::to_string(kCapacity) + " numbers");
+    }
+  }
+}
+
 /// "left op right" with op one of =, != and has; op and right are empty without one.
 struct MapPhrase {
   std::string_view left, op, right;
