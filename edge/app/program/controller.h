@@ -28,13 +28,12 @@ concept ControllerWorld = requires(World& world, const World& known, CycleRecord
                                    const CycleRecord& done, std::int64_t number, std::int32_t level,
                                    const std::string& line) {
   typename World::Prices;
-  typename World::Meter;
   typename World::Limits;
   typename World::Seal;
   { world.clock() } -> std::same_as<EdgeClock&>;
   { world.battery() } -> std::same_as<ModbusBattery&>;
   { world.prices() } -> std::same_as<typename World::Prices&>;
-  { world.meter() } -> std::same_as<typename World::Meter&>;
+  { world.meter() } -> std::same_as<ModbusMeter&>;
   { world.limits() } -> std::same_as<typename World::Limits&>;
   // First price answer, and price level of the last hours.
   { world.check_price_server() } -> std::same_as<Status>;
@@ -63,7 +62,7 @@ concept ControllerWorld = requires(World& world, const World& known, CycleRecord
 template <ControllerWorld World>
 class Controller {
  public:
-  using Site = SiteLimits<typename World::Meter, typename World::Limits>;
+  using Site = SiteLimits<ModbusMeter, typename World::Limits>;
   using Loop = ControlLoop<ModbusBattery, typename World::Prices, EdgeClock, Site>;
 
   /// Both must outlive this object.

@@ -22,7 +22,6 @@ namespace bess {
 class RealWorld {
  public:
   using Prices = PriceReader;
-  using Meter = ModbusMeter;
   using Limits = LimitFile;
   using Seal = HeapSeal;
 

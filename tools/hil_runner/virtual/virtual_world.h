@@ -76,7 +76,6 @@ class EdgeState {
 class VirtualWorld {
  public:
   using Prices = VirtualPrices;
-  using Meter = ModbusMeter;
   using Limits = VirtualOperator;
   /// No seal: records are stored in memory.
   struct Seal {
