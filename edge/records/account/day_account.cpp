@@ -82,12 +82,7 @@ int DayAccount::interventions() const {
 }
 
 std::int64_t DayAccount::start_utc_s() const {
-  return utc_from_local({.year = local_day_ / 10'000,
-                         .month = local_day_ / 100 % 100,
-                         .day = local_day_ % 100,
-                         .hour = 0,
-                         .minute = 0,
-                         .second = 0});
+  return utc_from_local({local_day_ / 10'000, local_day_ / 100 % 100, local_day_ % 100, 0, 0, 0});
 }
 
 std::string DayAccount::date() const {

@@ -30,9 +30,7 @@ inline bool parse_moment(std::string_view text, std::int64_t now_utc_s, std::int
   CivilTime wall{};
   const auto utc_on_day_of = [&wall](std::int64_t day_utc_s) {
     const LocalMinute day = local_minute_of(day_utc_s);
-    wall.year = day.year;
-    wall.month = day.month;
-    wall.day = day.day;
+    wall = {day.year, day.month, day.day, wall.hour, wall.minute, wall.second};
     return utc_from_local(wall);
   };
   for (const std::string_view day : {"today ", "yesterday "}) {
