@@ -62,11 +62,15 @@ struct UsualDay {
   BreakEvenRow rows[kQuarterHourCount] = {};
 };
 
-/// Plan from the published record, for the control loop.
-struct OutlookExchange {
-  const OutlookModel* model = nullptr;
-  UsualDay usual{};
+/// Part of the published record (edge/prices/record) for a student by outlook.
+struct PublishedOutlook {
   OutlookPlanRows plan_rows{};
+  UsualDay usual{};
+};
+
+/// Plan from the published record, for the control loop.
+struct OutlookExchange : PublishedOutlook {
+  const OutlookModel* model = nullptr;
 };
 
 /// At a tick, at the level of its decision. Sets all fields but `planned_utc_s`.

@@ -20,9 +20,7 @@ PricePublisher::PricePublisher(std::string path) : path_(std::move(path)) {
 
 void PricePublisher::publish_outlook(const OutlookExchange& exchange) {
   const std::lock_guard lock(mutex_);
-  if (outlook_ == nullptr) outlook_ = std::make_unique<PublishedOutlook>();
-  outlook_->plan_rows = exchange.plan_rows;
-  outlook_->usual = exchange.usual;
+  outlook_ = std::make_unique<PublishedOutlook>(exchange);
   ++prices_.outlook_number;
   write();
 }

@@ -130,8 +130,7 @@ void PriceReader::take_plan(std::span<const char> bytes, std::int64_t outlook_nu
       settings_.model != nullptr && outlook_number != 0 && outlook_number != taken_outlook_;
   if (!is_new || decode_outlook(bytes, outlook_) != Status::kOk) return;
   taken_outlook_ = outlook_number;
-  exchange_.usual = outlook_.usual;
-  exchange_.plan_rows = outlook_.plan_rows;
+  static_cast<PublishedOutlook&>(exchange_) = outlook_;
 }
 
 /// Rejects rows that a healthy bess-prices never publishes.

@@ -40,12 +40,6 @@ struct PublishedPrices {
   std::int64_t outlook_number = 0;  ///< of the second part; 0: none
 };
 
-/// For a student by outlook.
-struct PublishedOutlook {
-  OutlookPlanRows plan_rows{};
-  UsualDay usual{};
-};
-
 inline constexpr std::size_t kPublishedPricesBytes =
     sizeof(PublishedPrices) + sizeof(std::uint32_t);
 inline constexpr std::size_t kPublishedBytesMax =
