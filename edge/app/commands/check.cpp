@@ -15,10 +15,8 @@
 #include "edge/core/control/policy.h"
 #include "edge/core/site/meter_check.h"
 #include "edge/device/battery/modbus_battery.h"
-#include "edge/device/registers/codec.h"
 #include "edge/records/log/journal.h"
 #include "shared/host/run_program.h"
-#include "shared/utc_text.h"
 
 namespace bess {
 

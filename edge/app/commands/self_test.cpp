@@ -17,7 +17,6 @@
 #include "edge/core/control/policy.h"
 #include "edge/core/memory/heap_seal.h"
 #include "edge/device/battery/modbus_battery.h"
-#include "edge/records/log/journal.h"
 #include "shared/host/text.h"
 #include "shared/utc_text.h"
 

@@ -15,7 +15,6 @@
 #include "edge/core/site/connection_guard.h"
 #include "edge/records/log/atomic_file.h"
 #include "edge/records/log/health.h"
-#include "edge/records/log/journal.h"
 #include "edge/records/log/log_reader.h"
 #include "edge/records/log/log_text.h"
 #include "edge/records/why/explanation.h"

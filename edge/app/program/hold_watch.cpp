@@ -6,7 +6,6 @@
 
 #include "edge/records/log/journal.h"
 #include "shared/scaled_clock.h"
-#include "shared/units_and_limits.h"
 
 namespace bess {
 namespace {

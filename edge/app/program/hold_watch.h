@@ -12,7 +12,6 @@
 #include "edge/app/storage/restored_state.h"
 #include "edge/core/control/hold.h"
 #include "edge/core/memory/plain_thread.h"
-#include "shared/fixed_text.h"
 
 namespace bess {
 

@@ -1,6 +1,5 @@
 #include "edge/app/recording/energy_evidence.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 
 #include "edge/core/loop/control_settings.h"
 #include "edge/core/site/site_limits.h"

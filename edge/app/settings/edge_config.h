@@ -10,7 +10,6 @@
 #include "edge/app/settings/retired_keys.h"
 #include "edge/records/log/event_log.h"
 #include "shared/fixed_text.h"
-#include "shared/host/toml_reader.h"
 #include "shared/scaled_clock.h"
 
 namespace bess {

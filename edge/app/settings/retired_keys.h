@@ -2,8 +2,6 @@
 // works, and --check and status name them.
 #pragma once
 
-#include <iterator>
-#include <string>
 #include <string_view>
 
 #include "edge/core/base/static_vector.h"

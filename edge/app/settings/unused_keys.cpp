@@ -1,7 +1,6 @@
 #include "edge/app/settings/unused_keys.h"
 
 #include "shared/host/text.h"
-#include "shared/units_and_limits.h"
 
 namespace bess {
 namespace {

@@ -2,7 +2,6 @@
 // device reports it (eMMC, not SD cards). For self-test and `status`.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <string_view>
 

@@ -6,8 +6,6 @@
 
 #include <bit>
 #include <cstdint>
-#include <iterator>
-#include <string_view>
 
 #include "edge/core/base/status.h"
 #include "edge/core/control/cycle_budget.h"

@@ -5,7 +5,6 @@
 // shared/manual/guides/troubleshooting.md has the same table, checked by reasons_test.cpp.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <string_view>
 

@@ -18,11 +18,9 @@
 // too.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <optional>
 
-#include "edge/core/base/response_band.h"
 #include "edge/core/control/control_types.h"
 #include "edge/core/supervision/energy_balance.h"
 #include "edge/core/supervision/leaky_count.h"

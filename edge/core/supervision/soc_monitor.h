@@ -11,7 +11,6 @@
 
 #include <cstdint>
 
-#include "edge/core/base/response_band.h"
 #include "edge/core/supervision/energy_balance.h"
 #include "edge/core/supervision/leaky_count.h"
 #include "edge/core/supervision/response.h"

@@ -23,7 +23,6 @@
 #include "edge/device/battery/commission_types.h"
 #include "edge/device/battery/meter_proof.h"
 #include "edge/device/battery/step_fit.h"
-#include "edge/device/registers/codec.h"
 #include "shared/scaled_clock.h"
 
 namespace bess {

@@ -10,7 +10,6 @@
 #include "edge/prices/record/price_settings.h"
 #include "shared/host/http_client.h"
 #include "shared/scaled_clock.h"
-#include "shared/units_and_limits.h"
 
 namespace bess {
 

@@ -6,7 +6,6 @@
 
 #include <cstdio>
 #include <cstring>
-#include <optional>
 #include <string>
 #include <thread>
 

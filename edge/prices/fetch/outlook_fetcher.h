@@ -12,7 +12,6 @@
 #include "edge/app/settings/edge_config.h"
 #include "edge/core/control/outlook.h"
 #include "edge/prices/fetch/day_ahead_feed.h"
-#include "edge/prices/fetch/day_ahead_store.h"
 #include "edge/prices/fetch/price_fetcher.h"
 
 namespace bess {

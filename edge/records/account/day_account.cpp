@@ -1,7 +1,6 @@
 #include "edge/records/account/day_account.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "shared/host/text.h"

@@ -1,5 +1,4 @@
 // Explanation of a control cycle, as text and JSON with the same values.
-#include <cstdio>
 
 #include "edge/core/control/policy.h"
 #include "edge/records/log/log_text.h"

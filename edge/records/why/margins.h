@@ -8,7 +8,6 @@
 #include "shared/action.h"
 #include "shared/features.h"
 #include "shared/price_thresholds.h"
-#include "shared/units_and_limits.h"
 
 namespace bess {
 
