@@ -1,6 +1,5 @@
 #include "edge/app/recording/exchange_recorder.h"
 
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>

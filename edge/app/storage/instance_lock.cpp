@@ -1,9 +1,7 @@
 #include "edge/app/storage/instance_lock.h"
 
 #include <fcntl.h>
-#include <limits.h>
 #include <signal.h>
-#include <stdlib.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>

@@ -1,6 +1,5 @@
 #include "edge/app/storage/storage_health.h"
 
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <sys/sysmacros.h>
