@@ -105,11 +105,6 @@ void say(JournalLevel level, const std::string& text) {
   write_journal_line(level, "bess-prices: outlook: " + text);
 }
 
-/// First tick at or after an instant.
-std::int64_t tick_from(std::int64_t utc_s) {
-  return (utc_s + kSecondsPerStep - 1) / kSecondsPerStep * kSecondsPerStep;
-}
-
 }  // namespace
 
 OutlookFetcher::OutlookFetcher(const EdgeConfig& config, const OutlookModel& model,
@@ -133,7 +128,7 @@ void OutlookFetcher::start(std::int32_t start_centi) {
 }
 
 OutlookFetcher::Decision OutlookFetcher::next_decision() const {
-  Decision next{tick_from(now_utc_s()), start_centi_};
+  Decision next{next_tick_utc_s(now_utc_s() - 1), start_centi_};
   LogReader log;
   FileMessage ignored;
   CycleRecord newest;
