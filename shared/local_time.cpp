@@ -4,6 +4,7 @@
 #include <time.h>
 
 #include <chrono>
+#include <cstdio>
 
 #include "shared/units_and_limits.h"
 
@@ -71,6 +72,21 @@ CivilTime civil_from_utc(std::int64_t utc_s) {
           second_of_day / 3'600,
           second_of_day / 60 % 60,
           second_of_day % 60};
+}
+
+FixedText<5> local_clock_text(std::int64_t utc_s) {
+  const int minute = local_minute_of(utc_s).minute_of_day;
+  char text[32];
+  std::snprintf(text, sizeof text, "%02d:%02d", minute / 60, minute % 60);
+  return text;
+}
+
+FixedText<16> local_text(std::int64_t utc_s) {
+  const LocalMinute now = local_minute_of(utc_s);
+  char text[80];
+  std::snprintf(text, sizeof text, "%04d-%02d-%02d %02d:%02d", now.year, now.month, now.day,
+                now.minute_of_day / 60, now.minute_of_day % 60);
+  return text;
 }
 
 }  // namespace bess

@@ -6,6 +6,8 @@
 
 #include <cstdint>
 
+#include "shared/fixed_text.h"
+
 namespace bess {
 
 /// Belgium: CET, summer time from the last Sunday of March to the last Sunday of October.
@@ -40,5 +42,20 @@ std::int64_t local_midnight_utc_s(std::int64_t utc_s, int days_later = 0);
 /// Seconds since 1970 of a UTC calendar time (proleptic Gregorian); fields must be in range.
 std::int64_t utc_from_civil(const CivilTime& t);
 CivilTime civil_from_utc(std::int64_t utc_s);
+
+/// Local day as one number, 20231126, for ordering and lookup.
+constexpr std::int32_t local_day_of(const LocalMinute& now) {
+  return (now.year * 100 + now.month) * 100 + now.day;
+}
+inline std::int32_t local_day_at(std::int64_t utc_s) {
+  return local_day_of(local_minute_of(utc_s));
+}
+
+// Instants as local time of the market's zone, for people.
+
+/// "14:32".
+FixedText<5> local_clock_text(std::int64_t utc_s);
+/// "2026-11-23 14:32".
+FixedText<16> local_text(std::int64_t utc_s);
 
 }  // namespace bess

@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "shared/local_text.h"
+#include "shared/local_time.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {

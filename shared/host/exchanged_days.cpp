@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "shared/exchange_cost.h"
-#include "shared/local_day.h"
+#include "shared/local_time.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "shared/host/json.h"
-#include "shared/local_text.h"
+#include "shared/local_time.h"
 #include "shared/utc_text.h"
 #include "tests/support/program_output.h"
 #include "tests/support/programs_under_test.h"

@@ -5,7 +5,7 @@
 #include "edge/records/account/day_accounts.h"
 #include "edge/records/account/earnings.h"
 #include "edge/records/log/journal.h"
-#include "shared/local_day.h"
+#include "shared/local_time.h"
 
 namespace bess {
 namespace {

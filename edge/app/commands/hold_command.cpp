@@ -16,7 +16,7 @@
 #include "edge/records/log/journal.h"
 #include "edge/records/log/log_reader.h"
 #include "shared/host/text.h"
-#include "shared/local_text.h"
+#include "shared/local_time.h"
 
 namespace bess {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "edge/app/commands/command.h"
 #include "edge/records/log/atomic_file.h"
-#include "shared/local_text.h"
+#include "shared/local_time.h"
 #include "shared/utc_text.h"
 
 namespace bess {

@@ -8,7 +8,7 @@
 #include "edge/records/log/log_text.h"
 #include "edge/records/why/explanation.h"
 #include "edge/records/why/local_moment.h"
-#include "shared/local_text.h"
+#include "shared/local_time.h"
 
 namespace bess {
 namespace {

@@ -21,7 +21,7 @@
 #include "edge/records/why/next_decision.h"
 #include "shared/host/json.h"
 #include "shared/host/text.h"
-#include "shared/local_text.h"
+#include "shared/local_time.h"
 #include "shared/training_period.h"
 #include "shared/units_and_limits.h"
 

@@ -4,7 +4,7 @@
 #include "edge/app/commands/command.h"
 #include "edge/records/why/explanation.h"
 #include "edge/records/why/local_moment.h"
-#include "shared/local_text.h"
+#include "shared/local_time.h"
 
 namespace bess {
 namespace {

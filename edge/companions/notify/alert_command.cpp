@@ -4,7 +4,7 @@
 
 #include "shared/host/run_program.h"
 #include "shared/host/text.h"
-#include "shared/local_text.h"
+#include "shared/local_time.h"
 #include "shared/utc_text.h"
 
 namespace bess {

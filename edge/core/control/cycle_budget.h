@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "shared/local_day.h"
+#include "shared/local_time.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "shared/host/exchanged_days.h"
-#include "shared/local_day.h"
+#include "shared/local_time.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 

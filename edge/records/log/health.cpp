@@ -9,7 +9,7 @@
 #include "edge/core/supervision/energy_balance.h"
 #include "edge/records/log/alerts.h"
 #include "edge/records/log/log_text.h"
-#include "shared/local_text.h"
+#include "shared/local_time.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {

@@ -2,7 +2,7 @@
 
 #include "edge/records/log/record_fields.h"
 #include "edge/records/log/text_buffer.h"
-#include "shared/local_text.h"
+#include "shared/local_time.h"
 #include "shared/utc_text.h"
 
 namespace bess {

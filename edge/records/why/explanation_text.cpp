@@ -4,7 +4,7 @@
 #include "edge/records/log/log_text.h"
 #include "edge/records/why/explanation.h"
 #include "shared/host/text.h"
-#include "shared/local_text.h"
+#include "shared/local_time.h"
 #include "shared/utc_text.h"
 
 namespace bess {

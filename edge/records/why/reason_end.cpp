@@ -6,7 +6,7 @@
 #include "edge/core/control/quarter_hour_energy.h"
 #include "edge/records/why/explanation.h"
 #include "shared/host/text.h"
-#include "shared/local_text.h"
+#include "shared/local_time.h"
 
 namespace bess {
 namespace {

@@ -11,7 +11,7 @@
 #include "shared/host/file.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
-#include "shared/local_day.h"
+#include "shared/local_time.h"
 #include "shared/units_and_limits.h"
 #include "workstation/data/market/series/local_date.h"
 #include "workstation/runs/chain/run_config.h"

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "shared/host/user_error.h"
-#include "shared/local_day.h"
+#include "shared/local_time.h"
 #include "shared/utc_text.h"
 #include "workstation/base/answer.h"
 #include "workstation/correction/student/student_policy.h"

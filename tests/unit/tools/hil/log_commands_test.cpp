@@ -14,7 +14,7 @@
 #include "shared/host/json.h"
 #include "shared/host/run_program.h"
 #include "shared/host/text.h"
-#include "shared/local_day.h"
+#include "shared/local_time.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/tools/hil/real_minutes.h"
 #include "tools/hil_runner/run/run_scenario.h"

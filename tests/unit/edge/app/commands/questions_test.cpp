@@ -11,7 +11,7 @@
 #include "edge/records/why/local_moment.h"
 #include "shared/host/json.h"
 #include "shared/host/text.h"
-#include "shared/local_text.h"
+#include "shared/local_time.h"
 #include "shared/training_period.h"
 #include "tests/support/edge_words.h"
 #include "tests/support/temporary_folder.h"

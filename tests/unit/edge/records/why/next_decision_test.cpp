@@ -6,7 +6,6 @@
 #include "edge/app/settings/unused_keys.h"
 #include "edge/records/why/explanation.h"
 #include "shared/host/text.h"
-#include "shared/local_text.h"
 #include "shared/local_time.h"
 #include "tests/support/tokens.h"
 
