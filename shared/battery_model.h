@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "shared/units_and_limits.h"
+
 namespace bess {
 
 /// Response to an order: dead time, ramp, first-order lag. Mean and final power of any time span
@@ -129,7 +131,7 @@ struct BatteryParameters {
   double standby_w = 0;             ///< own consumption from the grid
   PowerResponse response{};         ///< from an order to its power
   ColdHours cold{};                 ///< applied by callers of battery_step
-  // Costs and limits of use, for accounting and planning (exchange_cost.h), not for battery_step.
+  // Costs and limits of use, for accounting and planning, not for battery_step.
   double wear_eur_per_mwh = 0;    ///< of throughput: charged and discharged energy, grid side
   TradingCosts costs{};           ///< in addition to the price
   double cycles_per_day_max = 0;  ///< full cycles per local day; 0: no limit
@@ -224,6 +226,27 @@ inline ResponseStep response_step(const BatteryParameters& battery, double soc_f
   const bool is_at_bound =
       step.soc_frac == battery.soc_max_frac || step.soc_frac == battery.soc_min_frac;
   return {step, is_at_bound ? PowerState{} : PowerState{step.power_w, step.power_w}};
+}
+
+// Exchange cost: the only place where energy becomes money, for accounting, planning, learning and
+// settlement.
+
+/// Cost of exchanging `energy_mwh` (grid side, charge positive) at this price, with trading costs
+/// and wear. Negative: revenue.
+inline double exchange_cost_eur(const BatteryParameters& battery, double energy_mwh,
+                                double price_eur_per_mwh) {
+  const double paid_eur_per_mwh = energy_mwh > 0
+                                      ? battery.costs.import_eur_per_mwh(price_eur_per_mwh)
+                                      : battery.costs.export_eur_per_mwh(price_eur_per_mwh);
+  return energy_mwh * paid_eur_per_mwh + std::fabs(energy_mwh) * battery.wear_eur_per_mwh;
+}
+
+/// Profit of a step of `hours`, including own consumption.
+inline double step_profit_eur(const BatteryParameters& battery, double energy_mwh, double hours,
+                              double price_eur_per_mwh) {
+  const double standby_mwh = battery.standby_w / kWattsPerMegawatt * hours;
+  return -exchange_cost_eur(battery, energy_mwh, price_eur_per_mwh) -
+         standby_mwh * battery.costs.import_eur_per_mwh(price_eur_per_mwh);
 }
 
 }  // namespace bess

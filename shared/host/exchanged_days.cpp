@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "shared/exchange_cost.h"
+#include "shared/battery_model.h"
 #include "shared/local_time.h"
 #include "shared/units_and_limits.h"
 

@@ -1,5 +1,5 @@
 // Settled prices by quarter-hour, and energy (exchange.h) and money by local days at these prices,
-// with the costs of a contract (exchange_cost.h).
+// with the costs of a contract.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // Exchange costs by hand on one exchange, at a price above and below zero; without costs nothing
 // changes.
-#include "shared/exchange_cost.h"
+#include "shared/battery_model.h"
 
 #include <gtest/gtest.h>
 

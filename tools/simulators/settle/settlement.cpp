@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shared/exchange_cost.h"
+#include "shared/battery_model.h"
 #include "shared/host/user_error.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"

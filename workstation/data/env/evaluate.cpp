@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "shared/exchange_cost.h"
+#include "shared/battery_model.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {

@@ -6,7 +6,7 @@
 // runs the whole series, and the split's days are summed: their part of the best run of the whole
 // period. (939.9 on the benchmark; one plan over the chained days would give 954.)
 //
-// Profit is net of trading costs and wear (shared/exchange_cost.h). A step is paid at the mean
+// Profit is net of trading costs and wear (shared/battery_model.h). A step is paid at the mean
 // price of its two minutes, and a percentage applies to that mean: where a quarter-hour ends inside
 // a step and the price changes its sign, a settlement by quarter-hours deducts slightly more. After
 // cycles_per_day_max of a local day no order is given until midnight; before that, a direction is

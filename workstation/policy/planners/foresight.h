@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "shared/battery_model.h"
-#include "shared/exchange_cost.h"
 #include "workstation/data/env/policy.h"
 #include "workstation/policy/planners/soc_grid.h"
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "shared/exchange_cost.h"
+#include "shared/battery_model.h"
 #include "shared/host/user_error.h"
 #include "shared/local_time.h"
 #include "shared/units_and_limits.h"

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 
-#include "shared/exchange_cost.h"
+#include "shared/battery_model.h"
 
 namespace bess {
 

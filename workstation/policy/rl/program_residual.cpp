@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shared/exchange_cost.h"
+#include "shared/battery_model.h"
 #include "workstation/base/parallel_for.h"
 #include "workstation/policy/rl/transition.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shared/exchange_cost.h"
+#include "shared/battery_model.h"
 #include "shared/local_time.h"
 #include "shared/price_level.h"
 #include "workstation/data/market/model/simulated_market.h"

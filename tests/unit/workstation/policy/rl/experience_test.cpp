@@ -1,5 +1,5 @@
 #include "workstation/policy/rl/experience.h"
-#include "shared/exchange_cost.h"
+#include "shared/battery_model.h"
 #include "workstation/policy/planners/stochastic_program.h"
 
 #include <set>
