@@ -55,6 +55,10 @@ inline constexpr std::size_t kFileBytesMax = std::size_t{512} << 20;
 /// followed by other data, or larger than `bytes_max` when unpacked; never holds more than that.
 std::string read_file(const std::filesystem::path& path, std::size_t bytes_max = kFileBytesMax);
 
+/// `text` without its byte order mark. Throws UserError for a ZIP archive, UTF-16 or a web page,
+/// which are not supported; `name` is used in the message.
+std::string_view plain_text(std::string_view text, std::string_view name);
+
 /// Writes `contents` to `path` (gzip if the name ends in .gz): to a temporary file in the same
 /// folder, synced, then renamed. Creates missing parent folders. Throws UserError; never leaves a
 /// partial file. Writes directly to devices and pipes; replaces the target of a symbolic link;

@@ -7,7 +7,6 @@
 
 #include "shared/host/csv.h"
 #include "shared/host/file.h"
-#include "shared/host/plain_text.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"

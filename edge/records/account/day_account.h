@@ -7,7 +7,7 @@
 #include <string>
 
 #include "edge/core/control/control_types.h"
-#include "shared/host/exchanged_days.h"
+#include "shared/host/exchange.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "shared/host/exchanged_days.h"
+#include "shared/host/exchange.h"
 #include "shared/local_time.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"

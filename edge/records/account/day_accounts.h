@@ -10,7 +10,6 @@
 #include "edge/records/account/settled_prices.h"
 #include "edge/records/log/log_reader.h"
 #include "shared/host/exchange.h"
-#include "shared/host/exchanged_days.h"
 
 namespace bess {
 

@@ -11,7 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "shared/host/exchanged_days.h"
+#include "shared/host/exchange.h"
+#include "shared/host/toml_reader.h"
 
 namespace bess {
 

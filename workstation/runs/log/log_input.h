@@ -8,14 +8,14 @@
 
 #include "shared/context_classes.h"
 #include "shared/host/command_line.h"
-#include "shared/host/exchanged_days.h"
+#include "shared/host/exchange.h"
 #include "workstation/correction/student/student_file.h"
 #include "workstation/data/env/cycle_log.h"
 #include "workstation/data/env/evaluate.h"
 
 namespace bess {
 
-// Local days of a log: energy and money as in `bess-edge earned` (exchanged_days.h), and the market
+// Local days of a log: energy and money as in `bess-edge earned` (exchange.h), and the market
 // on which other policies run.
 //
 // The battery is accounted as on the edge: energy is reconstructed to the second and paid by

@@ -1,5 +1,5 @@
 // Price of a quarter-hour, by hand: settled, otherwise the newest of its own minutes.
-#include "shared/host/exchanged_days.h"
+#include "shared/host/exchange.h"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,6 @@
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/host/minute_file.h"
-#include "shared/host/plain_text.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "shared/units_and_limits.h"
