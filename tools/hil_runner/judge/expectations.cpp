@@ -4,25 +4,10 @@ namespace bess {
 
 namespace {
 
-bool fits(Expectation::Command wanted, const CommandInForce& c) {
-  using enum Expectation::Command;
-  switch (wanted) {
-    case kAny:
-      return true;
-    case kCharge:
-      return c.power_w > 0;
-    case kDischarge:
-      return c.power_w < 0;
-    case kZero:
-      return c.is_driven && c.power_w == 0;
-    case kNone:
-      return !c.is_driven;
-    case kDriven:
-      return c.is_driven;
-    case kNotDriven:
-      return c.power_w == 0;
-  }
-  return false;
+bool fits(const ExpectedCommand& wanted, const CommandInForce& c) {
+  const int direction = c.power_w > 0 ? 1 : c.power_w < 0 ? -1 : 0;
+  return wanted.direction.value_or(direction) == direction &&
+         wanted.is_driven.value_or(c.is_driven) == c.is_driven;
 }
 
 void judge_reasons(JudgeContext& judging, const Expectation& expectation, const Window& span) {
@@ -61,9 +46,6 @@ void judge_plans(JudgeContext& judging, const Expectation& e, const Window& span
 }  // namespace
 
 void judge_expectations(JudgeContext& judging) {
-  constexpr const char* kNames[] = {"anything",        "charging",          "discharging",
-                                    "0 W, held",       "no order in force", "an order in force",
-                                    "no power ordered"};
   int number = 0;
   for (const Expectation& expectation : judging.scenario.expectations) {
     judging.rule = fmt::format("expect {}", ++number);
@@ -74,8 +56,7 @@ void judge_expectations(JudgeContext& judging) {
     for (std::int64_t t = (from_ns + kStepNs - 1) / kStepNs * kStepNs; t < to_ns; t += kStepNs) {
       const CommandInForce command = judging.command_at(judging.settled_ns(t));
       if (!fits(expectation.command, command)) {
-        judging.find(judging.settled_ns(t), kNames[static_cast<int>(expectation.command)],
-                     watts(command));
+        judging.find(judging.settled_ns(t), expectation.command.text, watts(command));
       } else if (command.power_w < expectation.power_w_min ||
                  command.power_w > expectation.power_w_max) {
         judging.find(

@@ -154,18 +154,28 @@ constexpr bool is_operator_event(ScenarioEvent::EventKind kind) {
 }
 std::string_view event_name(ScenarioEvent::EventKind kind);
 
+/// Command in force that is expected.
+struct ExpectedCommand {
+  std::string_view name;          ///< in the file
+  const char* text;               ///< in a finding
+  std::optional<int> direction;   ///< 1 charges, -1 discharges, 0 orders no power; empty: any
+  std::optional<bool> is_driven;  ///< by an order, or in its own mode; empty: either
+};
+
+inline constexpr ExpectedCommand kExpectedCommands[] = {
+    {"any", "anything", {}, {}},
+    {"charge", "charging", 1, {}},
+    {"discharge", "discharging", -1, {}},
+    {"zero", "0 W, held", 0, true},
+    {"none", "no order in force", 0, false},
+    {"driven", "an order in force", {}, true},
+    {"not_driven", "no power ordered", 0, {}},
+};
+
 struct Expectation {
-  enum class Command : std::uint8_t {
-    kAny,
-    kCharge,
-    kDischarge,
-    kZero,       ///< an order of 0 W
-    kNone,       ///< own mode of the battery
-    kDriven,     ///< any order
-    kNotDriven,  ///< 0 W or its own mode
-  };
   MinuteSpan span;
-  Command command = Command::kAny;  ///< in every control cycle of the span, from the battery trace
+  /// In every control cycle of the span, from the battery trace.
+  ExpectedCommand command = kExpectedCommands[0];
   double power_w_min = -kNeverMin;  ///< of the same commands
   double power_w_max = kNeverMin;
   std::string reason;                            ///< logged at least once in the span; empty: any

@@ -299,23 +299,11 @@ void read_range(TomlTable& table, std::string_view key, const char* unit, double
 }
 
 /// Whether the power range excludes the command.
-bool is_ruled_out(const Expectation& expectation) {
-  using enum Expectation::Command;
-  const bool may_be_zero = expectation.power_w_min <= 0 && expectation.power_w_max >= 0;
-  switch (expectation.command) {
-    case kAny:
-    case kDriven:
-      return false;
-    case kCharge:
-      return expectation.power_w_max <= 0;
-    case kDischarge:
-      return expectation.power_w_min >= 0;
-    case kZero:
-    case kNone:
-    case kNotDriven:
-      return !may_be_zero;
-  }
-  return false;
+bool is_ruled_out(const Expectation& e) {
+  if (!e.command.direction) return false;
+  if (*e.command.direction > 0) return e.power_w_max <= 0;
+  if (*e.command.direction < 0) return e.power_w_min >= 0;
+  return e.power_w_min > 0 || e.power_w_max < 0;
 }
 
 /// Refuses expectations that no run can violate or none can meet.
@@ -331,8 +319,8 @@ void check_expectation(TomlTable& table, const Scenario& scenario, const Expecta
   if (table.has("power_w") && e.power_w_min <= -power_w && e.power_w_max >= power_w) {
     table.fail("power_w", fmt::format("excludes nothing: the battery has {:g} W", power_w));
   }
-  if (e.command == Expectation::Command::kAny && !table.has("power_w") && e.reason.empty() &&
-      e.no_reason.empty() && e.outlook == OutlookSource::kNone) {
+  if (e.command.name == "any" && !table.has("power_w") && e.reason.empty() && e.no_reason.empty() &&
+      e.outlook == OutlookSource::kNone) {
     table.fail("command", "or power_w, reason, no_reason or outlook is required");
   }
   if (table.has("quarter_hours") && e.outlook == OutlookSource::kNone)
@@ -346,10 +334,11 @@ void check_expectation(TomlTable& table, const Scenario& scenario, const Expecta
 void read_expectation(TomlTable table, Scenario& scenario) {
   Expectation expectation;
   read_span(table, scenario.minutes, expectation.span);
+  std::vector<std::string_view> commands;
+  for (const ExpectedCommand& known : kExpectedCommands) commands.push_back(known.name);
   int command = 0;
-  table.choice("command", command,
-               {"any", "charge", "discharge", "zero", "none", "driven", "not_driven"});
-  expectation.command = static_cast<Expectation::Command>(command);
+  table.choice("command", command, commands);
+  expectation.command = kExpectedCommands[command];
   read_range(table, "power_w", ", in W", expectation.power_w_min, expectation.power_w_max);
   int outlook = 0;
   table.choice("outlook", outlook, {"any", "planned", "usual", "late", "missing"});
