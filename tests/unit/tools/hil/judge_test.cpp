@@ -1,6 +1,8 @@
 // Judge: each invariant finds its violation in a hand-made record, and nothing in a good one.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "shared/scaled_clock.h"
 #include "tools/hil_runner/base/work_folder.h"
 #include "tools/hil_runner/judge/judge.h"
@@ -348,16 +350,20 @@ TEST(Judge, HoldsPowerAgainstTheRangeThatIsExpected) {
   EXPECT_EQ(run.broken(), "expect 1");
 }
 
+const ExpectedCommand& expected(std::string_view name) {
+  return *std::ranges::find(kExpectedCommands, name, &ExpectedCommand::name);
+}
+
 TEST(Judge, HoldsTheRunAgainstWhatTheScenarioExpects) {
   HandMade run;
   Expectation expectation;
   expectation.span = {.from_min = 4, .to_min = 10};
-  expectation.command = Expectation::Command::kZero;
+  expectation.command = expected("zero");
   run.scenario.expectations = {expectation};
   EXPECT_EQ(run.broken(), "");
-  run.scenario.expectations[0].command = Expectation::Command::kCharge;
+  run.scenario.expectations[0].command = expected("charge");
   EXPECT_EQ(run.broken(), "expect 1");
-  run.scenario.expectations[0].command = Expectation::Command::kAny;
+  run.scenario.expectations[0].command = expected("any");
   run.scenario.expectations[0].reason = "alarm";
   EXPECT_EQ(run.broken(), "expect 1");
 }
