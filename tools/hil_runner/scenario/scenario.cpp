@@ -104,18 +104,9 @@ void read_battery_fault(TomlTable table, Scenario& scenario) {
   if (table.value() == nullptr) return;
   FaultSchedule& fault = scenario.battery_faults.emplace_back();
   const bool rtu = scenario.battery.rtu;
-  MinuteSpan window;
-  read_span(table, scenario.minutes, window);
-  fault.every = 1;
-  fault.from_s = 60 * window.from_min;
-  fault.to_s = 60 * window.to_min;
+  read_fault_times(table, scenario.minutes, fault);
   table.integer("every", fault.every, 1, 1'000'000);
   read_decimal(table, "probability", fault.probability, 0, 1);
-  read_decimal(table, "on_s", fault.on_s, 1, kSecondsPerDay);
-  read_decimal(table, "off_s", fault.off_s, 1, kSecondsPerDay);
-  if (table.ok() && (fault.on_s > 0) != (fault.off_s > 0)) {
-    table.fail(fault.on_s > 0 ? "on_s" : "off_s", "requires the other of on_s and off_s");
-  }
   std::int64_t seed = 1;
   table.integer("seed", seed, 0, INT64_MAX);
   fault.seed = static_cast<std::uint64_t>(seed);

@@ -93,18 +93,8 @@ void read_meter_fault(TomlTable table, Scenario& scenario) {
                             : "need a meter with its own map; for the grid point of a battery use "
                               "[battery_fault]");
   }
-  MinuteSpan window;
-  read_span(table, scenario.minutes, window);
-  FaultSchedule& schedule = meter.fault;
-  schedule.every = 1;
-  schedule.from_s = 60 * window.from_min;
-  schedule.to_s = 60 * window.to_min;
-  read_decimal(table, "on_s", schedule.on_s, 1, kSecondsPerDay);
-  read_decimal(table, "off_s", schedule.off_s, 1, kSecondsPerDay);
-  if (table.ok() && (schedule.on_s > 0) != (schedule.off_s > 0)) {
-    table.fail(schedule.on_s > 0 ? "on_s" : "off_s", "requires the other of on_s and off_s");
-  }
-  read_fault_kinds(table, schedule.faults, [](const BatteryFaultInfo& info) -> std::string {
+  read_fault_times(table, scenario.minutes, meter.fault);
+  read_fault_kinds(table, meter.fault.faults, [](const BatteryFaultInfo& info) -> std::string {
     return is_of_meter(info) ? "" : "is a fault of a battery, not of a meter";
   });
   table.finish();

@@ -9,6 +9,7 @@
 
 #include "shared/host/toml_document.h"
 #include "shared/host/toml_reader.h"
+#include "shared/units_and_limits.h"
 #include "tools/hil_runner/scenario/scenario.h"
 
 namespace bess {
@@ -73,6 +74,20 @@ inline void read_steps(TomlTable& table, double scenario_minutes,
     steps.push_back({from_min, value});
     return "";
   });
+}
+
+/// Span and on-off times of faults; every opportunity within them counts.
+inline void read_fault_times(TomlTable& table, double scenario_minutes, FaultSchedule& schedule) {
+  MinuteSpan window;
+  read_span(table, scenario_minutes, window);
+  schedule.every = 1;
+  schedule.from_s = 60 * window.from_min;
+  schedule.to_s = 60 * window.to_min;
+  read_decimal(table, "on_s", schedule.on_s, 1, kSecondsPerDay);
+  read_decimal(table, "off_s", schedule.off_s, 1, kSecondsPerDay);
+  if (table.ok() && (schedule.on_s > 0) != (schedule.off_s > 0)) {
+    table.fail(schedule.on_s > 0 ? "on_s" : "off_s", "requires the other of on_s and off_s");
+  }
 }
 
 /// Required key `kinds`: faults of bess-sim battery. `refuse(info)` returns an error or "".
