@@ -72,10 +72,10 @@ void for_each_mark(const Scenario& scenario, const Add& add) {
     add_faults("battery:", fault);
   }
   add_faults("meter:", scenario.meter.fault);
-  const PriceFaultWindow& price = scenario.price_fault;
+  const MarketFaultSchedule& price = scenario.price_fault;
   if (price.fault != MarketFault::kNone) {
     add("prices", fmt::format("prices: {}", kMarketFaultNames[static_cast<int>(price.fault)]),
-        price.span.from_min, price.span.to_min);
+        price.from_s / 60, price.to_s / 60);
   }
   for (const MinuteSpan& gap : scenario.prices.missing) {
     add("prices", "prices: missing", gap.from_min, gap.to_min);

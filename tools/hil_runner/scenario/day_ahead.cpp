@@ -39,10 +39,7 @@ void read_day_ahead(TomlTable table, const std::filesystem::path& folder, Scenar
   for (const char* key : {"every", "from_min", "to_min", "mend_min"}) {
     if (fault == 0 && table.has(key)) table.fail(key, "requires a fault");
   }
-  MinuteSpan span;
-  read_span(table, scenario.minutes, span);
-  auction.from_s = 60 * span.from_min;
-  auction.to_s = 60 * span.to_min;
+  read_fault_span(table, scenario.minutes, auction);
   table.integer("every", auction.every, 1, 1'000'000);
   double mend_min = 0;
   read_decimal(table, "mend_min", mend_min, 0, kScenarioMinutesMax);

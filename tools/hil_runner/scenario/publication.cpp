@@ -60,11 +60,12 @@ MinuteSeries scenario_prices(const Scenario& scenario) {
 
 Publication::Publication(const Scenario& scenario, const MinuteSeries& prices)
     : scenario_(scenario), prices_(prices) {
-  const PriceFaultWindow& fault = scenario.price_fault;
+  const MarketFaultSchedule& fault = scenario.price_fault;
   constexpr MarketFault kDumb[] = {MarketFault::kHttp500, MarketFault::kGarbage,
                                    MarketFault::kTrailing, MarketFault::kTwice};
   const bool is_dumb = std::ranges::find(kDumb, fault.fault) != std::end(kDumb);
-  if (is_dumb && fault.every == 1) silent_.push_back(fault.span);
+  if (is_dumb && fault.every == 1)
+    silent_.push_back({.from_min = fault.from_s / 60, .to_min = fault.to_s / 60});
   double from_min = -1;
   for (const ScenarioEvent& event : scenario.events) {
     using enum ScenarioEvent::EventKind;
@@ -84,14 +85,14 @@ std::optional<Publication::Row> Publication::newest(std::int64_t utc_ns) const {
       return newest_published(scenario_.utc_ns_at(span.from_min), 0);
     }
   }
-  const PriceFaultWindow& fault = scenario_.price_fault;
+  const MarketFaultSchedule& fault = scenario_.price_fault;
   const bool is_struck = fault.fault != MarketFault::kNone && fault.every == 1 &&
-                         utc_ns >= scenario_.utc_ns_at(fault.span.from_min) &&
-                         utc_ns < scenario_.utc_ns_at(fault.span.to_min);
+                         utc_ns >= scenario_.utc_ns_at(fault.from_s / 60) &&
+                         utc_ns < scenario_.utc_ns_at(fault.to_s / 60);
   if (is_struck && fault.fault == MarketFault::kNull) return newest_published(utc_ns, 1);
   if (is_struck && fault.fault == MarketFault::kStale) {
     // Older answers do not replace newer rows.
-    const std::int64_t from_ns = scenario_.utc_ns_at(fault.span.from_min);
+    const std::int64_t from_ns = scenario_.utc_ns_at(fault.from_s / 60);
     return newest_published(std::max(from_ns, utc_ns - kStaleAnswerS * kNanosecondsPerSecond), 0);
   }
   return newest_published(utc_ns, 0);

@@ -148,15 +148,15 @@ void read_battery_faults(TomlTable& table, Scenario& scenario, const Sub& sub, c
 
 void read_price_fault(TomlTable table, Scenario& scenario) {
   if (table.value() == nullptr) return;
-  PriceFaultWindow& fault = scenario.price_fault;
-  read_span(table, scenario.minutes, fault.span);
+  MarketFaultSchedule& fault = scenario.price_fault;
+  read_fault_span(table, scenario.minutes, fault);
   table.integer("every", fault.every, 1, 1'000'000);
   int kind = 0;
   table.require("kind");
   table.choice("kind", kind, std::span(kMarketFaultNames).subspan(1));  // without none
   fault.fault = static_cast<MarketFault>(kind + 1);
   // Use steps of [prices] for a price that moves again, or is frozen in some answers.
-  const bool is_partly_frozen = fault.every > 1 || fault.span.to_min != kNeverMin;
+  const bool is_partly_frozen = fault.every > 1 || fault.to_s != kNeverMin;
   if (table.ok() && fault.fault == MarketFault::kFrozen && is_partly_frozen) {
     table.fail("kind", "frozen lasts to the end, in every answer: omit every and to_min");
   }

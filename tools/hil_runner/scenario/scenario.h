@@ -106,12 +106,6 @@ struct ScenarioMeter {
   FaultSchedule fault;  ///< of a meter with its own map; no faults: healthy
 };
 
-struct PriceFaultWindow {
-  MarketFault fault = MarketFault::kNone;
-  std::int32_t every = 1;
-  MinuteSpan span;
-};
-
 /// Event of a process, its clock or its disk, or a command of people and other programs.
 struct ScenarioEvent {
   enum class EventKind : std::uint8_t {
@@ -201,7 +195,7 @@ struct Scenario {
   // TOML lines of the edge's configuration, by table; `edge_other`: complete tables.
   std::string edge_battery, edge_price, edge_guard, edge_meter, edge_limits, edge_other;
   std::vector<FaultSchedule> battery_faults;  ///< several: only in virtual time
-  PriceFaultWindow price_fault;
+  MarketFaultSchedule price_fault{.every = 1};
   std::optional<AuctionSettings> day_ahead;  ///< with faults
   std::string day_ahead_file;                ///< empty: synthetic
   std::vector<ScenarioEvent> events;         ///< ascending in time
@@ -225,7 +219,7 @@ struct Scenario {
   }
   /// Start of the price fault.
   [[nodiscard]] std::int64_t price_fault_utc_s() const {
-    return start_utc_s + static_cast<std::int64_t>(60 * price_fault.span.from_min);
+    return start_utc_s + static_cast<std::int64_t>(price_fault.from_s);
   }
   [[nodiscard]] std::int64_t end_utc_ns() const { return utc_ns_at(minutes); }
 };

@@ -440,7 +440,7 @@ std::vector<ScenarioPart> parts_of(const Scenario& scenario) {
   parts.add_if(!scenario.meter.fault.faults.empty(), "meter_fault",
                [](Scenario& s) { s.meter.fault = {}; });
   parts.add_if(scenario.price_fault.fault != MarketFault::kNone, "price_fault",
-               [](Scenario& s) { s.price_fault = {}; });
+               [](Scenario& s) { s.price_fault.fault = MarketFault::kNone; });
   parts.add_if(scenario.day_ahead && scenario.day_ahead->fault != AuctionFault::kNone,
                "day_ahead fault", [](Scenario& s) { s.day_ahead->fault = AuctionFault::kNone; });
   parts.add_each(

@@ -76,13 +76,19 @@ inline void read_steps(TomlTable& table, double scenario_minutes,
   });
 }
 
+/// The same in seconds, for faults.
+template <typename Fault>
+void read_fault_span(TomlTable& table, double scenario_minutes, Fault& fault) {
+  MinuteSpan span;
+  read_span(table, scenario_minutes, span);
+  fault.from_s = 60 * span.from_min;
+  fault.to_s = 60 * span.to_min;
+}
+
 /// Span and on-off times of faults; every opportunity within them counts.
 inline void read_fault_times(TomlTable& table, double scenario_minutes, FaultSchedule& schedule) {
-  MinuteSpan window;
-  read_span(table, scenario_minutes, window);
   schedule.every = 1;
-  schedule.from_s = 60 * window.from_min;
-  schedule.to_s = 60 * window.to_min;
+  read_fault_span(table, scenario_minutes, schedule);
   read_decimal(table, "on_s", schedule.on_s, 1, kSecondsPerDay);
   read_decimal(table, "off_s", schedule.off_s, 1, kSecondsPerDay);
   if (table.ok() && (schedule.on_s > 0) != (schedule.off_s > 0)) {

@@ -112,10 +112,7 @@ Evidence run_virtual(const Scenario& scenario, const MinuteSeries& prices, const
                   config.site.map, battery, time, &*house);
   }
   const MarketView market(prices, scenario.prices.latency_s);
-  MarketFaultPlan faults({.fault = scenario.price_fault.fault,
-                          .every = scenario.price_fault.every,
-                          .from_s = 60 * scenario.price_fault.span.from_min,
-                          .to_s = 60 * scenario.price_fault.span.to_min});
+  MarketFaultPlan faults(scenario.price_fault);
   Evidence evidence;
   if (scenario.witness) bus.show_to(wire_decoder(config.battery.map, evidence.wire));
   EdgeState state;

@@ -134,7 +134,7 @@ std::vector<std::string> battery_options(const Scenario& scenario, const std::st
 /// `prices`: minute file. Writes a file for day-ahead prices.
 std::vector<std::string> market_options(const Scenario& scenario, const std::string& prices,
                                         const WorkFolder& folder) {
-  const PriceFaultWindow& fault = scenario.price_fault;
+  const MarketFaultSchedule& fault = scenario.price_fault;
   Options options;
   options.add("--prices", prices);
   options.add("--latency-s", scenario.prices.latency_s);
@@ -142,7 +142,7 @@ std::vector<std::string> market_options(const Scenario& scenario, const std::str
   if (fault.fault == MarketFault::kNone) return options.take();
   options.add("--fault", kMarketFaultNames[static_cast<int>(fault.fault)]);
   options.add("--fault-every", fault.every);
-  options.add_span("--fault", 60 * fault.span.from_min, 60 * fault.span.to_min);
+  options.add_span("--fault", fault.from_s, fault.to_s);
   return options.take();
 }
 
