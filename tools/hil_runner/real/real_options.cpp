@@ -183,7 +183,7 @@ std::string complaint_of_address(const std::string& address) {
 
 }  // namespace
 
-void add_real_options(ProgramCommand& command, RealOptions& options) {
+void add_real_options(ProgramCommand& command, RealBattery& options) {
   command.flag("--yes-drive-real-battery", options.is_sure,
                "confirmation for --real: charges and discharges that battery");
   command.option("--real-map", options.map, "register map: a name in edge/device/maps, or a path");
@@ -217,23 +217,16 @@ void add_real_options(ProgramCommand& command, RealOptions& options) {
       .needs("--real");
 }
 
-std::optional<RealBattery> real_battery(const RealOptions& options) {
+std::optional<RealBattery> real_battery(const RealBattery& options) {
   if (options.address.empty()) {
-    const bool has_others = options.is_sure || !options.map.empty() || options.capacity_wh ||
-                            options.power_w || options.soc_min_frac || options.soc_max_frac;
+    const bool has_others = options.is_sure || !options.map.empty() || options.capacity_wh > 0 ||
+                            options.power_w > 0 || options.soc_min_frac >= 0 ||
+                            options.soc_max_frac >= 0;
     if (has_others) fail("--real ADDRESS is required by these options");
     return std::nullopt;
   }
-  RealBattery battery{.address = options.address,
-                      .map = map_path(options.map, {}),
-                      .variant = options.variant,
-                      .unit = options.unit,
-                      .baud = options.baud,
-                      .capacity_wh = *options.capacity_wh,
-                      .power_w = *options.power_w,
-                      .soc_min_frac = *options.soc_min_frac,
-                      .soc_max_frac = *options.soc_max_frac,
-                      .time_scale = options.time_scale};
+  RealBattery battery = options;
+  battery.map = map_path(options.map, {});
   if (battery.soc_min_frac >= battery.soc_max_frac) {
     fail("--real-soc-max {} must be above --real-soc-min {}", battery.soc_max_frac,
          battery.soc_min_frac);

@@ -18,16 +18,17 @@ namespace bess {
 // bus traffic; its behaviour is known only from its measurements.
 
 struct RealBattery {
-  std::string address;    ///< as given
-  std::string map;        ///< path
+  std::string address{};  ///< as given; empty: no real battery
+  std::string map{};      ///< path; of the options: as given
   std::string variant{};  ///< empty: the map's first
   std::optional<int> unit{};
   std::optional<int> baud{};
   double capacity_wh = 0;
-  double power_w = 0;  ///< maximum of an order
-  double soc_min_frac = 0;
-  double soc_max_frac = 0;
+  double power_w = 0;        ///< maximum of an order
+  double soc_min_frac = -1;  ///< negative: not given
+  double soc_max_frac = -1;
   std::int32_t time_scale = 1;  ///< of a bess-sim battery used instead
+  bool is_sure = false;         ///< confirmed on the command line
 
   [[nodiscard]] bool is_serial() const { return address.starts_with('/'); }
 };
@@ -54,18 +55,10 @@ std::vector<MinuteRecord> measured_minutes(const std::vector<CycleRecord>& log);
 /// Violation of the limits; empty: none. Independent of the edge's guard.
 std::string beyond_limits(const CycleRecord& cycle, const RealBattery& battery);
 
-struct RealOptions {
-  std::string address, map, variant;
-  bool is_sure = false;
-  std::optional<int> unit, baud;
-  std::optional<double> capacity_wh, power_w, soc_min_frac, soc_max_frac;
-  int time_scale = 1;
-};
-
 /// `options` must outlive the command.
-void add_real_options(ProgramCommand& command, RealOptions& options);
+void add_real_options(ProgramCommand& command, RealBattery& options);
 
 /// Empty without --real. Throws UserError for contradicting options.
-std::optional<RealBattery> real_battery(const RealOptions& options);
+std::optional<RealBattery> real_battery(const RealBattery& options);
 
 }  // namespace bess

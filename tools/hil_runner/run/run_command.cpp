@@ -49,7 +49,7 @@ struct RunOptions {
   int draw = 0;  ///< number of scenarios; 0: all
   std::uint64_t seed = 0;
   std::string junit, report, pinned, records, edge, simulators;
-  RealOptions real;
+  RealBattery real;
 };
 
 /// Files as given; scenarios of folders by name.
