@@ -10,9 +10,9 @@
 #include <map>
 
 #include "edge/device/registers/map_file.h"
-#include "shared/host/bus_recording.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
+#include "tools/simulators/battery_sim/recorded_device.h"
 #include "tools/simulators/battery_sim/register_image.h"
 
 namespace bess {
@@ -34,18 +34,6 @@ using KnownRegisters = std::map<int, std::uint16_t>;
 
 void show(const KnownRegisters& known, Registers& registers) {
   for (const auto& [address, value] : known) registers[static_cast<std::size_t>(address)] = value;
-}
-
-void read_recording(const std::string& path, std::vector<BusExchange>& exchanges) {
-  BusRecordingReader reader;
-  std::string error;
-  if (!reader.open(path, CutRecording::kAccepted, error)) throw UserError(error);
-  BusExchange exchange;
-  auto next = reader.next(exchange, error);
-  for (; next == BusRecordingReader::Next::kExchange; next = reader.next(exchange, error)) {
-    if (exchange.outcome == BusOutcome::kAnswered) exchanges.push_back(exchange);
-  }
-  if (next == BusRecordingReader::Next::kDamaged) throw UserError(error);
 }
 
 }  // namespace
@@ -109,7 +97,11 @@ std::string link_keys(const RealBattery& battery) {
 std::vector<DispatchEvent> orders_on_the_bus(const std::vector<std::string>& recordings,
                                              const RegisterMap& map, std::int64_t end_utc_ns) {
   std::vector<BusExchange> exchanges;
-  for (const std::string& recording : recordings) read_recording(recording, exchanges);
+  for (const std::string& recording : recordings) {
+    read_recording(recording, CutRecording::kAccepted, [&](const BusExchange& exchange) {
+      if (exchange.outcome == BusOutcome::kAnswered) exchanges.push_back(exchange);
+    });
+  }
   if (exchanges.empty()) return {};
   // Never full or empty: only commands matter.
   const BatteryParameters boundless{

@@ -22,40 +22,43 @@ std::string request_text(const BusExchange& request) {
                      request.function);
 }
 
-std::string instant_text(std::int64_t utc_ns) {
-  return std::string(utc_text(utc_ns / kNanosecondsPerSecond).view());
+/// The reaction of a device to other values than the recorded ones is unknown.
+std::string difference(const BusExchange& recorded, const BusExchange& request) {
+  if (!request.is_write() || std::ranges::equal(request.values(), recorded.values())) return "";
+  return fmt::format("{}: [{}], at {} it was [{}]: the device continues as recorded",
+                     request_text(request), fmt::join(request.values(), " "),
+                     utc_text(recorded.utc_ns / kNanosecondsPerSecond).view(),
+                     fmt::join(recorded.values(), " "));
 }
 
 }  // namespace
 
-RecordedDevice::RecordedDevice(const std::string& path, CutRecording cut) {
+RecordingHead read_recording(const std::string& path, CutRecording cut,
+                             const std::function<void(const BusExchange&)>& visit) {
   BusRecordingReader reader;
   std::string error;
   if (!reader.open(path, cut, error)) throw UserError(error);
-  head_ = reader.head();
   BusExchange exchange;
   auto next = reader.next(exchange, error);
   for (; next == BusRecordingReader::Next::kExchange; next = reader.next(exchange, error)) {
-    add(exchange);
+    visit(exchange);
   }
   if (next == BusRecordingReader::Next::kDamaged) throw UserError(error);
+  return reader.head();
+}
+
+RecordedDevice::RecordedDevice(const std::string& path, CutRecording cut) {
+  head_ = read_recording(path, cut, [this](const BusExchange& exchange) { add(exchange); });
   if (entries_.empty()) fail("{}: the recording has no exchanges", path);
 }
 
 void RecordedDevice::add(const BusExchange& exchange) {
-  const std::span<const std::uint16_t> values = exchange.values();
-  if (entries_.empty()) first_utc_ns_ = exchange.utc_ns;
-  last_utc_ns_ = exchange.utc_ns;
   histories_[{exchange.unit, exchange.function, exchange.address, exchange.count}]
       .entries.push_back(entries_.size());
-  entries_.push_back({.utc_ns = exchange.utc_ns,
-                      .latency_us = exchange.latency_us,
-                      .outcome = exchange.outcome,
-                      .exception = exchange.exception,
-                      .values = {values.begin(), values.end()}});
-  if (exchange.outcome != BusOutcome::kAnswered || exchange.is_write()) return;
+  entries_.push_back(exchange);
+  if (exchange.is_write()) return;
   int address = exchange.address;
-  for (const std::uint16_t value : values) {
+  for (const std::uint16_t value : exchange.values()) {
     readings_[{exchange.unit, exchange.function == 4, address++}].push_back(
         {exchange.utc_ns, value});
   }
@@ -70,9 +73,12 @@ std::string RecordedDevice::answer(BusExchange& request) {
   const auto history =
       histories_.find({request.unit, request.function, request.address, request.count});
   if (history != histories_.end()) {
-    const Entry& entry = now_in(history->second, request.utc_ns);
-    std::string reported = difference(entry, request);
-    give(entry, request);
+    const BusExchange& recorded = now_in(history->second, request.utc_ns);
+    std::string reported = difference(recorded, request);
+    request.outcome = recorded.outcome;
+    request.exception = recorded.exception;
+    request.latency_us = recorded.latency_us;
+    if (!request.is_write()) std::ranges::copy(recorded.values(), request.registers.begin());
     return reported;
   }
   if (!request.is_write() && assemble(request)) return "";
@@ -83,9 +89,10 @@ std::string RecordedDevice::answer(BusExchange& request) {
 
 /// Next answer of this request, or the previous one until its time. The first one is valid at any
 /// time.
-const RecordedDevice::Entry& RecordedDevice::now_in(RequestHistory& history,
-                                                    std::int64_t utc_ns) const {
-  const auto entry = [&](std::size_t i) -> const Entry& { return entries_[history.entries[i]]; };
+const BusExchange& RecordedDevice::now_in(RequestHistory& history, std::int64_t utc_ns) const {
+  const auto entry = [&](std::size_t i) -> const BusExchange& {
+    return entries_[history.entries[i]];
+  };
   const std::size_t count = history.entries.size();
   // Skip answers that a later one has replaced.
   while (history.next + 1 < count && entry(history.next + 1).utc_ns <= utc_ns - kSlackNs) {
@@ -94,24 +101,6 @@ const RecordedDevice::Entry& RecordedDevice::now_in(RequestHistory& history,
   const bool has_come = history.next < count && entry(history.next).utc_ns <= utc_ns + kSlackNs;
   if (has_come || history.next == 0) ++history.next;
   return entry(history.next - 1);
-}
-
-void RecordedDevice::give(const Entry& entry, BusExchange& request) {
-  request.outcome = entry.outcome;
-  request.exception = entry.exception;
-  request.latency_us = entry.latency_us;
-  if (request.is_write()) return;
-  std::ranges::copy(entry.values, request.registers.begin());
-}
-
-/// The reaction of a device to other values than the recorded ones is unknown.
-std::string RecordedDevice::difference(const Entry& entry, const BusExchange& request) {
-  if (!request.is_write()) return "";
-  const std::span<const std::uint16_t> written = request.values();
-  if (std::ranges::equal(written, entry.values)) return "";
-  return fmt::format("{}: [{}], at {} it was [{}]: the device continues as recorded",
-                     request_text(request), fmt::join(written, " "), instant_text(entry.utc_ns),
-                     fmt::join(entry.values, " "));
 }
 
 /// False if one of the registers was never read.

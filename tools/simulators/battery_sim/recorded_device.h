@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <tuple>
@@ -17,6 +18,10 @@
 
 namespace bess {
 
+/// Visits all exchanges of a recording; returns its head. Throws UserError naming file and line.
+RecordingHead read_recording(const std::string& path, CutRecording cut,
+                             const std::function<void(const BusExchange&)>& visit);
+
 class RecordedDevice {
  public:
   /// Reads the whole recording. Throws UserError naming file and line.
@@ -24,8 +29,8 @@ class RecordedDevice {
 
   [[nodiscard]] const RecordingHead& head() const { return head_; }
   [[nodiscard]] std::int64_t exchanges() const { return std::ssize(entries_); }
-  [[nodiscard]] std::int64_t first_utc_ns() const { return first_utc_ns_; }
-  [[nodiscard]] std::int64_t last_utc_ns() const { return last_utc_ns_; }
+  [[nodiscard]] std::int64_t first_utc_ns() const { return entries_.front().utc_ns; }
+  [[nodiscard]] std::int64_t last_utc_ns() const { return entries_.back().utc_ns; }
   [[nodiscard]] bool has_unit(std::int32_t unit) const;
 
   /// Fills outcome, exception, latency and the read registers of `request`, for its `utc_ns`.
@@ -34,13 +39,6 @@ class RecordedDevice {
 
  private:
   using Key = std::tuple<std::int32_t, int, int, int>;  ///< unit, function, address, count
-  struct Entry {
-    std::int64_t utc_ns = 0;
-    std::int64_t latency_us = 0;
-    BusOutcome outcome = BusOutcome::kAnswered;
-    std::int32_t exception = 0;
-    std::vector<std::uint16_t> values;  ///< read or written
-  };
   struct RequestHistory {
     std::vector<std::size_t> entries;  ///< in the order of time
     std::size_t next = 0;
@@ -52,14 +50,11 @@ class RecordedDevice {
   using Place = std::tuple<std::int32_t, bool, int>;  ///< unit, input register, address
 
   void add(const BusExchange& exchange);
-  [[nodiscard]] const Entry& now_in(RequestHistory& history, std::int64_t utc_ns) const;
-  static void give(const Entry& entry, BusExchange& request);
-  static std::string difference(const Entry& entry, const BusExchange& request);
+  [[nodiscard]] const BusExchange& now_in(RequestHistory& history, std::int64_t utc_ns) const;
   [[nodiscard]] bool assemble(BusExchange& request) const;
 
   RecordingHead head_;
-  std::int64_t first_utc_ns_ = 0, last_utc_ns_ = 0;
-  std::vector<Entry> entries_;
+  std::vector<BusExchange> entries_;  ///< never empty
   std::map<Key, RequestHistory> histories_;
   std::map<Place, std::vector<Reading>> readings_;
 };
