@@ -31,10 +31,18 @@ FaultyDevice::FaultyDevice(const RegisterMap& map, SimulatedBattery& battery, mo
       battery_(battery),
       house_(house),
       start_utc_ns_(start_utc_ns),
+      registers_(static_cast<std::size_t>(served_addresses(map))),
+      input_registers_(registers_.size()),
+      image_(map, battery, registers_, input_registers_),
+      reply_(context, rtu),
       plan_(faults, rtu),
       next_action_ns_(start_utc_ns) {
-  make_registers();
-  reply_ = std::make_unique<BusReply>(context, rtu);
+  mapping_.nb_registers = static_cast<int>(registers_.size());
+  mapping_.tab_registers = registers_.data();
+  // Some devices have different holding and input registers at one address.
+  mapping_.nb_input_registers = has_input_registers(map) ? mapping_.nb_registers : 0;
+  mapping_.tab_input_registers = input_registers_.data();
+  if (house != nullptr) image_.connect_house(house->load);
 }
 
 bool FaultyDevice::serves_unit(int unit) const {
@@ -61,7 +69,7 @@ Bytes FaultyDevice::answer(const BusRequest& request, BatteryFault fault, std::i
     change_values(fault, utc_ns);
   }
   const Bytes right = right_answer(request, fault == BatteryFault::kAckWithoutEffect);
-  return reply_->spoil(request, right, fault, plan_.random());
+  return reply_.spoil(request, right, fault, plan_.random());
 }
 
 void FaultyDevice::advance(std::int64_t utc_ns) {
@@ -70,25 +78,13 @@ void FaultyDevice::advance(std::int64_t utc_ns) {
   battery_.advance(utc_ns);
 }
 
-/// Some devices have different holding and input registers at one address.
-void FaultyDevice::make_registers() {
-  registers_.resize(static_cast<std::size_t>(served_addresses(map_)));
-  input_registers_.resize(registers_.size());
-  mapping_.nb_registers = static_cast<int>(registers_.size());
-  mapping_.tab_registers = registers_.data();
-  mapping_.nb_input_registers = has_input_registers(map_) ? mapping_.nb_registers : 0;
-  mapping_.tab_input_registers = input_registers_.data();
-  image_ = std::make_unique<RegisterImage>(map_, battery_, registers_, input_registers_);
-  if (house_ != nullptr) image_->connect_house(house_->load);
-}
-
 std::unique_lock<std::mutex> FaultyDevice::hold_plant() const {
   return house_ == nullptr ? std::unique_lock<std::mutex>() : std::unique_lock(house_->plant);
 }
 
 void FaultyDevice::refresh(std::int64_t utc_ns) {
   const auto plant = hold_plant();
-  image_->refresh(utc_ns);
+  image_.refresh(utc_ns);
 }
 
 /// Share of the ordered power that flows.
@@ -106,12 +102,12 @@ double FaultyDevice::gain(std::int64_t utc_ns) const {
 
 void FaultyDevice::show_grid_as_of(std::int64_t utc_ns) {
   const auto lasts = [&](BatteryFault fault) { return plan_.lasts(fault, elapsed_s(utc_ns)); };
-  image_->set_grid_display({.gain = lasts(BatteryFault::kGridScaled)  ? 0.1
-                                    : lasts(BatteryFault::kGridRatio) ? 0.65
-                                                                      : 1.0,
-                            .offset_w = lasts(BatteryFault::kGridOffset) ? -1'000.0 : 0.0,
-                            .late_s = lasts(BatteryFault::kGridLate) ? 60 : 0,
-                            .other_phase = lasts(BatteryFault::kGridOtherPhase)});
+  image_.set_grid_display({.gain = lasts(BatteryFault::kGridScaled)  ? 0.1
+                                   : lasts(BatteryFault::kGridRatio) ? 0.65
+                                                                     : 1.0,
+                           .offset_w = lasts(BatteryFault::kGridOffset) ? -1'000.0 : 0.0,
+                           .late_s = lasts(BatteryFault::kGridLate) ? 60 : 0,
+                           .other_phase = lasts(BatteryFault::kGridOtherPhase)});
 }
 
 /// Actions of another master between two requests happen at their own time; other lasting faults
@@ -141,7 +137,7 @@ void FaultyDevice::apply_lasting_faults(std::int64_t utc_ns) {
                        .hidden_drain_w = lasts(BatteryFault::kHiddenDrain) ? 0.25 * rated_w : 0.0,
                        .forced_charge_w = lasts(BatteryFault::kForcedCharge) ? rated_w / 8 : 0.0,
                        .balancing_w = lasts(BatteryFault::kBalancing) ? 450.0 : 0.0});
-  image_->set_display(
+  image_.set_display(
       {.soc_stands_still = lasts(BatteryFault::kSocStuck),
        .soc_is_inverted = lasts(BatteryFault::kSocInverted),
        .soc_offset_frac = lasts(BatteryFault::kSocRecalibrates) ? 0.06 : 0.0,
@@ -154,15 +150,15 @@ void FaultyDevice::apply_lasting_faults(std::int64_t utc_ns) {
 
 void FaultyDevice::act_on_order(std::int64_t utc_ns) {
   const auto lasts = [&](BatteryFault fault) { return plan_.lasts(fault, elapsed_s(utc_ns)); };
-  image_->refresh(utc_ns);
+  image_.refresh(utc_ns);
   if (lasts(BatteryFault::kOtherMaster)) {
-    image_->order_from_outside(-static_cast<std::int32_t>(battery_.parameters().power_w_max));
+    image_.order_from_outside(-static_cast<std::int32_t>(battery_.parameters().power_w_max));
   }
-  if (lasts(BatteryFault::kMasterStops)) image_->release_from_outside();
-  if (lasts(BatteryFault::kMasterMode)) image_->change_mode_from_outside();
+  if (lasts(BatteryFault::kMasterStops)) image_.release_from_outside();
+  if (lasts(BatteryFault::kMasterMode)) image_.change_mode_from_outside();
   if (lasts(BatteryFault::kEndsOrders)) {
     battery_.stop_dispatch();
-    image_->refresh(utc_ns);
+    image_.refresh(utc_ns);
   }
 }
 
@@ -170,13 +166,13 @@ void FaultyDevice::act_on_order(std::int64_t utc_ns) {
 Bytes FaultyDevice::right_answer(const BusRequest& request, bool keep_registers) {
   std::vector<std::uint16_t> before;
   if (keep_registers) before = registers_;
-  Bytes bytes = reply_->answer(request, mapping_);
+  Bytes bytes = reply_.answer(request, mapping_);
   if (keep_registers) {
     std::copy(before.begin(), before.end(), registers_.begin());  // image_ has a view of them
   } else if (request.is_write() &&
              request.address() + request.write_count() <= mapping_.nb_registers) {
     const auto plant = hold_plant();
-    image_->apply_write(request.address(), request.write_count());
+    image_.apply_write(request.address(), request.write_count());
   }
   return bytes;
 }
@@ -188,7 +184,7 @@ void FaultyDevice::change_values(BatteryFault fault, std::int64_t utc_ns) {
     const RegisterPoint& point = map_.points[index];
     std::int64_t value = 0;
     RegisterBlock block;
-    const int address = image_->address_of(index);
+    const int address = image_.address_of(index);
     auto& registers = point.read_function == 4 ? input_registers_ : registers_;
     static_cast<void>(decode(point, &registers[address], value));
     if (encode(point, changed(value), Rounding::kNearest, block) != Status::kOk) return;
@@ -204,7 +200,7 @@ void FaultyDevice::change_values(BatteryFault fault, std::int64_t utc_ns) {
   if (fault == BatteryFault::kEarlyExpiry) {
     const auto plant = hold_plant();
     battery_.stop_dispatch();
-    image_->refresh(utc_ns);
+    image_.refresh(utc_ns);
   }
 }
 

@@ -41,16 +41,15 @@ class FaultyDevice {
   [[nodiscard]] std::size_t struck() const { return plan_.struck(); }
   /// Bytes of the answer, after the effect of a write. Call for a late answer when it is due.
   Bytes answer(const BusRequest& request, BatteryFault fault, std::int64_t utc_ns);
-  Bytes exception(const BusRequest& request, int code) { return reply_->exception(request, code); }
+  Bytes exception(const BusRequest& request, int code) { return reply_.exception(request, code); }
   /// Frame of any answer, changed by `fault`.
   Bytes frame(const BusRequest& request, const Bytes& unit_and_pdu, BatteryFault fault) {
-    return reply_->spoil(request, reply_->frame(request, unit_and_pdu), fault, plan_.random());
+    return reply_.spoil(request, reply_.frame(request, unit_and_pdu), fault, plan_.random());
   }
   /// Advances the battery to an instant.
   void advance(std::int64_t utc_ns);
 
  private:
-  void make_registers();
   [[nodiscard]] std::unique_lock<std::mutex> hold_plant() const;
   void refresh(std::int64_t utc_ns);
   void show_grid_as_of(std::int64_t utc_ns);
@@ -71,8 +70,8 @@ class FaultyDevice {
   std::vector<std::uint16_t> registers_;  ///< holding
   std::vector<std::uint16_t> input_registers_;
   modbus_mapping_t mapping_{};
-  std::unique_ptr<RegisterImage> image_;
-  std::unique_ptr<BusReply> reply_;
+  RegisterImage image_;
+  BusReply reply_;
   FaultPlan plan_;
   std::int64_t next_action_ns_;  ///< UTC of the next action on the order
 };
