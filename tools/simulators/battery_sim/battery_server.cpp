@@ -20,11 +20,6 @@ namespace {
 
 constexpr std::int32_t kIllegalFunction = 1;
 
-std::uint16_t word_at(const BusRequest& request, int offset) {
-  const int at = request.header + offset;
-  return static_cast<std::uint16_t>(request.bytes[at] << 8 | request.bytes[at + 1]);
-}
-
 /// False for a function that recordings do not have.
 bool read_request(const BusRequest& request, BusExchange& exchange) {
   exchange.unit = request.unit();
@@ -32,13 +27,14 @@ bool read_request(const BusRequest& request, BusExchange& exchange) {
   exchange.address = static_cast<std::uint16_t>(request.address());
   const bool is_read = exchange.function == 3 || exchange.function == 4;
   if (!is_read && !exchange.is_write()) return false;
-  const int count = is_read ? word_at(request, 4) : request.write_count();
+  const int count = is_read ? request.word(4) : request.write_count();
   if (count < 1 || count > BusExchange::kRegistersMax) return false;
   exchange.count = static_cast<std::uint16_t>(count);
   if (is_read) return true;
   const int first = exchange.function == 6 ? 4 : 7;  // behind address, or count and bytes
   for (int i = 0; i < count; ++i) {
-    exchange.registers[static_cast<std::size_t>(i)] = word_at(request, first + 2 * i);
+    exchange.registers[static_cast<std::size_t>(i)] =
+        static_cast<std::uint16_t>(request.word(first + 2 * i));
   }
   return true;
 }

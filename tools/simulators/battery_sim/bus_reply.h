@@ -26,11 +26,13 @@ struct BusRequest {
 
   [[nodiscard]] int unit() const { return bytes[header]; }
   [[nodiscard]] int function() const { return bytes[header + 1]; }
-  [[nodiscard]] int address() const { return bytes[header + 2] << 8 | bytes[header + 3]; }
-  [[nodiscard]] bool is_write() const { return function() == 6 || function() == 16; }
-  [[nodiscard]] int write_count() const {
-    return function() == 16 ? bytes[header + 4] << 8 | bytes[header + 5] : 1;
+  /// 16 bits at an offset from the unit.
+  [[nodiscard]] int word(int offset) const {
+    return bytes[header + offset] << 8 | bytes[header + offset + 1];
   }
+  [[nodiscard]] int address() const { return word(2); }
+  [[nodiscard]] bool is_write() const { return function() == 6 || function() == 16; }
+  [[nodiscard]] int write_count() const { return function() == 16 ? word(4) : 1; }
 };
 
 class BusReply {
