@@ -101,15 +101,16 @@ bool is_bare(const CLI::App& command, int argc) {
   return argc == words;
 }
 
-/// Rule for numbers; CLI11 refuses other text. (Its PositiveNumber prints the largest double with
-/// 309 digits.)
-std::function<std::string(std::string&)> number_rule(std::function<bool(double)> holds,
-                                                     const std::string& rule) {
-  return [holds = std::move(holds), rule](const std::string& given) {
+/// Rule for numbers, `shown` in the help; CLI11 refuses other text. (Its PositiveNumber prints the
+/// largest double with 309 digits.)
+CLI::Validator number_rule(std::function<bool(double)> holds, const std::string& rule,
+                           const std::string& shown) {
+  const auto complaint = [holds = std::move(holds), rule](const std::string& given) {
     double value = 0;
     const bool is_number = CLI::detail::lexical_cast(given, value);
     return is_number && !holds(value) ? given + " must be " + rule : std::string();
   };
+  return CLI::Validator(complaint, shown);
 }
 
 /// Shorter than std::to_string().
@@ -136,16 +137,14 @@ ProgramOption& ProgramOption::checked(const CLI::Validator& rule) {
 ProgramOption& ProgramOption::range(int low, int high) { return checked(CLI::Range(low, high)); }
 ProgramOption& ProgramOption::range(double low, double high) {
   const std::string rule = short_text(low) + " to " + short_text(high);
-  return checked(CLI::Validator(number_rule([=](double x) { return x >= low && x <= high; }, rule),
-                                "[" + rule + "]"));
+  return checked(
+      number_rule([=](double x) { return x >= low && x <= high; }, rule, "[" + rule + "]"));
 }
 ProgramOption& ProgramOption::positive() {
-  return checked(
-      CLI::Validator(number_rule([](double x) { return x > 0; }, "above 0"), "POSITIVE"));
+  return checked(number_rule([](double x) { return x > 0; }, "above 0", "POSITIVE"));
 }
 ProgramOption& ProgramOption::non_negative() {
-  return checked(
-      CLI::Validator(number_rule([](double x) { return x >= 0; }, "0 or more"), "NONNEGATIVE"));
+  return checked(number_rule([](double x) { return x >= 0; }, "0 or more", "NONNEGATIVE"));
 }
 ProgramOption& ProgramOption::one_of(const std::vector<std::string>& names) {
   return checked(CLI::IsMember(names));
