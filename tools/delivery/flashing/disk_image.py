@@ -10,11 +10,11 @@ class Refused(Exception):
     """Error message of one line, with the remedy."""
 
 
-def run(*command, text=None, check=True, binary=False):
+def run(*command, text=None, binary=False):
     """Output of a program; raises Refused with its last line on failure."""
     data = text.encode() if isinstance(text, str) else text
     done = subprocess.run(command, input=data, capture_output=True)
-    if check and done.returncode != 0:
+    if done.returncode != 0:
         lines = (done.stderr or done.stdout).decode(errors="replace").strip().splitlines()
         raise Refused(f"{command[0]}: {lines[-1] if lines else 'no reason given'}")
     return done.stdout if binary else done.stdout.decode(errors="replace")
@@ -83,11 +83,11 @@ class Image:
             except OSError:
                 raise Refused(f"{path} is missing inside: is it a Raspberry Pi OS image?")
 
-    def make_folder(self, path, mode=0o755):
+    def make_folder(self, path):
         if path in ("", "/") or self.exists(path):
             return
         self.make_folder(os.path.dirname(path))
-        self.debugfs(f"mkdir {path}", f"sif {path} mode 0{0o40000 | mode:o}", f"sif {path} uid 0",
+        self.debugfs(f"mkdir {path}", f"sif {path} mode 040755", f"sif {path} uid 0",
                      f"sif {path} gid 0", write=True)
 
     def write(self, path, data, mode=0o644):
