@@ -1,6 +1,7 @@
 # Package selection and checks, sourced by the commands of tools/flash.
 #   package_for ARCH RELEASE [FILE]   prints FILE, or the newest package for both; RELEASE is the
 #                             codename in the machine's /etc/os-release
+#   require_package FILE      fails unless it is a package of bess-edge
 #   require_whole FILE        fails unless the archive can be read to the end
 #   require_certified FILE    fails unless the package has a proved student with its certificate
 # They call die of the sourcing command.
@@ -8,6 +9,12 @@
 flashing_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../.." && pwd)
 # shellcheck source=tools/delivery/packaging/release.sh
 . "$flashing_root/tools/delivery/packaging/release.sh"
+
+require_package() {
+  [ -f "$1" ] || die "$1: no such package"
+  [ "$(dpkg-deb -f "$1" Package 2>/dev/null)" = bess-edge ] ||
+    die "$1: is not a package of bess-edge"
+}
 
 package_for() {
   local release=$2 file=${3:-} suffix make found
@@ -19,9 +26,7 @@ package_for() {
       -printf '%T@ %p\n' 2>/dev/null | sort -n | tail -n 1 | cut -d' ' -f2-)
     [ -n "$file" ] || die "build-packages$suffix/ has no bess-edge for $1; $make"
   fi
-  [ -f "$file" ] || die "$file: no such package"
-  [ "$(dpkg-deb -f "$file" Package 2>/dev/null)" = bess-edge ] ||
-    die "$file: is not a package of bess-edge"
+  require_package "$file"
   found=$(dpkg-deb -f "$file" Architecture)
   [ "$found" = "$1" ] || die "$file is for $found, the machine is $1; $make"
   # For a version without a mark, apt checks the dependencies.
