@@ -1,24 +1,20 @@
 #include "tools/simulators/market_sim/market_view.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "shared/host/json.h"
-#include "shared/local_time.h"
 #include "shared/scaled_clock.h"
 #include "shared/units_and_limits.h"
+#include "shared/utc_text.h"
 
 namespace bess {
 namespace {
 
-constexpr std::int64_t kQuarterHourS = 900;
-
 std::string offset_time(std::int64_t utc_s) {
-  const CivilTime t = civil_from_utc(utc_s);
-  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}+00:00", t.year, t.month, t.day, t.hour,
-                     t.minute, t.second);
+  std::string text(utc_text(utc_s).view());
+  text.pop_back();  // Z
+  return text + "+00:00";
 }
 
 }  // namespace
@@ -38,14 +34,19 @@ std::pair<std::size_t, std::size_t> MarketView::window(Dataset dataset,
   return {first_at_or_after(published_s + 1 - kSecondsPerDay), first_at_or_after(published_s + 1)};
 }
 
-std::vector<MarketView::Row> MarketView::visible_minutes(Dataset dataset,
-                                                         std::int64_t now_utc_ns) const {
+/// Minutes with a price, or the quarter-hours that they complete.
+std::vector<MarketView::Row> MarketView::visible(Dataset dataset, std::int64_t now_utc_ns) const {
+  constexpr std::int64_t kLastMinuteS = kSecondsPerQuarterHour - 60;
   const auto [begin, end] = window(dataset, now_utc_ns);
   std::vector<Row> rows;
-  rows.reserve(end - begin);
   for (std::size_t m = begin; m < end; ++m) {
+    const std::int64_t utc_s = prices_.utc_s(m);
     if (prices_.is_empty(m)) continue;
-    rows.push_back({prices_.utc_s(m), prices_.indicative[m]});
+    if (dataset != Dataset::kQuarterHours) {
+      rows.push_back({utc_s, prices_.indicative[m]});
+    } else if (utc_s % kSecondsPerQuarterHour == kLastMinuteS) {
+      rows.push_back({utc_s - kLastMinuteS, prices_.settled[m]});
+    }
   }
   return rows;
 }
@@ -62,21 +63,9 @@ void MarketView::freeze(std::int64_t frozen_utc_s, std::vector<Row>& rows) {
   }
 }
 
-std::vector<MarketView::Row> MarketView::visible_quarter_hours(std::int64_t now_utc_ns) const {
-  std::vector<Row> rows;
-  const auto [begin, end] = window(Dataset::kQuarterHours, now_utc_ns);
-  for (std::size_t m = begin; m < end; ++m) {
-    const std::int64_t utc_s = prices_.utc_s(m);
-    if (utc_s % kQuarterHourS != kQuarterHourS - 60 || prices_.is_empty(m)) continue;
-    rows.push_back({utc_s - (kQuarterHourS - 60), prices_.settled[m]});
-  }
-  return rows;
-}
-
 std::string MarketView::records(const RecordsQuery& query, std::int64_t now_utc_ns) const {
   const bool minutes = query.dataset != Dataset::kQuarterHours;
-  std::vector<Row> rows =
-      minutes ? visible_minutes(query.dataset, now_utc_ns) : visible_quarter_hours(now_utc_ns);
+  std::vector<Row> rows = visible(query.dataset, now_utc_ns);
   freeze(query.frozen_utc_s, rows);
   if (query.hide_newest_price && !rows.empty()) rows.back().price = std::nan("");
   if (query.newest_first) std::reverse(rows.begin(), rows.end());
@@ -86,7 +75,9 @@ std::string MarketView::records(const RecordsQuery& query, std::int64_t now_utc_
   for (std::size_t i = first; i < last; ++i) {
     Json row = Json::object(
         {{"datetime", offset_time(rows[i].utc_s)}, {"resolutioncode", minutes ? "PT1M" : "PT15M"}});
-    if (minutes) row.set("quarterhour", offset_time(rows[i].utc_s / kQuarterHourS * kQuarterHourS));
+    if (minutes)
+      row.set("quarterhour",
+              offset_time(rows[i].utc_s / kSecondsPerQuarterHour * kSecondsPerQuarterHour));
     row.set("qualitystatus", "NotValidated");
     row.set("imbalanceprice", Decimals{rows[i].price, 3});
     results.add(std::move(row));

@@ -43,8 +43,7 @@ class MarketView {
     double price;
   };
   static void freeze(std::int64_t frozen_utc_s, std::vector<Row>& rows);
-  [[nodiscard]] std::vector<Row> visible_minutes(Dataset dataset, std::int64_t now_utc_ns) const;
-  [[nodiscard]] std::vector<Row> visible_quarter_hours(std::int64_t now_utc_ns) const;
+  [[nodiscard]] std::vector<Row> visible(Dataset dataset, std::int64_t now_utc_ns) const;
   [[nodiscard]] std::pair<std::size_t, std::size_t> window(Dataset dataset,
                                                            std::int64_t now_utc_ns) const;
 
