@@ -19,11 +19,6 @@ std::int64_t local_at(std::int64_t utc_s, int minute) {
   return utc_from_local({local.year, local.month, local.day, minute / 60, minute % 60, 0});
 }
 
-/// A day has 23 to 25 hours.
-std::int64_t midnight_after(std::int64_t midnight_utc_s) {
-  return local_at(midnight_utc_s + 30 * kHour_s, 0);
-}
-
 /// Noon of a date; an empty text changes nothing.
 bool take_date(const std::string& text, std::int64_t& utc_s) {
   return text.empty() || (text.size() == 10 && parse_utc(text + "T12:00:00Z", utc_s));
@@ -79,7 +74,8 @@ AuctionFault AuctionView::fault_of(std::int64_t published_utc_s, std::int64_t no
   if (at_s < settings_.from_s || at_s >= settings_.to_s) return AuctionFault::kNone;
   const auto from_utc_s = settings_.start_utc_s + static_cast<std::int64_t>(settings_.from_s);
   const std::int64_t days =  // rounded: a day with a clock change has 23 or 25 hours
-      (local_at(published_utc_s, 0) - local_at(from_utc_s, 0) + kSecondsPerDay / 2) /
+      (local_midnight_utc_s(published_utc_s) - local_midnight_utc_s(from_utc_s) +
+       kSecondsPerDay / 2) /
       kSecondsPerDay;
   if ((days + 1) % settings_.every != 0) return AuctionFault::kNone;
   constexpr std::int64_t kCount = std::ssize(kAuctionFaultNames) - 2;  // without none and all
@@ -124,7 +120,7 @@ void AuctionView::add_day(std::int64_t midnight_utc_s, std::int64_t now_utc_s,
   if (fault == AuctionFault::kLate || fault == AuctionFault::kMissing) return;
   const std::int64_t noon_utc_s = midnight_utc_s + kSecondsPerDay / 2;
   const std::int64_t end_utc_s =
-      fault == AuctionFault::kHalf ? noon_utc_s : midnight_after(midnight_utc_s);
+      fault == AuctionFault::kHalf ? noon_utc_s : local_midnight_utc_s(midnight_utc_s, 1);
   for (; row != rows_.end() && row->utc_s < end_utc_s; ++row) {
     add(fault, *row, row->utc_s == noon_utc_s, published);
   }
@@ -139,8 +135,9 @@ AuctionAnswer AuctionView::answer(const std::string& start, const std::string& e
   AuctionAnswer answer;
   std::vector<AuctionRow> published;
   const std::int64_t last_utc_s = std::min(to_utc_s, rows_.back().utc_s);
-  for (std::int64_t midnight_utc_s = local_at(std::max(from_utc_s, rows_.front().utc_s), 0);
-       midnight_utc_s <= last_utc_s; midnight_utc_s = midnight_after(midnight_utc_s)) {
+  for (std::int64_t midnight_utc_s =
+           local_midnight_utc_s(std::max(from_utc_s, rows_.front().utc_s));
+       midnight_utc_s <= last_utc_s; midnight_utc_s = local_midnight_utc_s(midnight_utc_s, 1)) {
     add_day(midnight_utc_s, now_utc_s, answer, published);
   }
   if (answer.fault == AuctionFault::kHtml) {
