@@ -122,13 +122,26 @@ void read_battery_fault(TomlTable table, Scenario& scenario) {
   table.finish();
 }
 
+TomlTable sub(TomlTable& table, const std::string& key) {
+  return {table.table(key), table.file(), "[" + key + "]", table.error()};
+}
+
+/// Calls `read(table, scenario)` for each table of a list.
+void each(TomlTable& table, const std::string& key, Scenario& scenario,
+          void (*read)(TomlTable, Scenario&)) {
+  const TomlArray* const list = table.array(key);
+  for (std::size_t i = 0; list != nullptr && i < list->size(); ++i) {
+    read({&(*list)[i], table.file(), "[[" + key + "]]", table.error()}, scenario);
+  }
+}
+
 /// [battery_fault], or several [[battery_fault]].
-template <typename Sub, typename Each>
-void read_battery_faults(TomlTable& table, Scenario& scenario, const Sub& sub, const Each& each) {
+void read_battery_faults(TomlTable& table, Scenario& scenario) {
   const TomlValue* const node = table.node("battery_fault");
   if (node == nullptr) return;
-  if (node->as<TomlArray>() == nullptr) return read_battery_fault(sub("battery_fault"), scenario);
-  each("battery_fault", [&](TomlTable one) { read_battery_fault(std::move(one), scenario); });
+  if (node->as<TomlArray>() == nullptr)
+    return read_battery_fault(sub(table, "battery_fault"), scenario);
+  each(table, "battery_fault", scenario, read_battery_fault);
   const auto& faults = scenario.battery_faults;
   if (table.ok() && faults.size() > 1 && scenario.runs_wall) {
     table.fail("battery_fault",
@@ -236,14 +249,6 @@ void read_same_without(TomlTable table, Scenario& scenario) {
   }
 }
 
-template <typename Read>
-void each(TomlTable& table, std::string_view key, const Read& read) {
-  const TomlArray* const list = table.array(key);
-  for (std::size_t i = 0; list != nullptr && i < list->size(); ++i) {
-    read(TomlTable(&(*list)[i], table.file(), "[[" + std::string(key) + "]]", table.error()));
-  }
-}
-
 }  // namespace
 
 std::string map_path(const std::string& name, const fs::path& folder) {
@@ -275,28 +280,24 @@ Scenario read_scenario(const std::string& path) {
   scenario.path = path;
   const fs::path folder = fs::path(path).parent_path();
   TomlTable table(&document, path, "", error);
-  const auto sub = [&](const char* key) {
-    return TomlTable(table.table(key), path, "[" + std::string(key) + "]", error);
-  };
   table.require("title");
   read_text(table, "title", scenario.title);
   table.boolean("witness", scenario.witness);
   read_time(table, scenario);
-  read_battery(sub("battery"), folder, scenario.battery);
-  read_prices(sub("prices"), folder, scenario);
-  read_house(sub("house"), scenario);
-  read_meter(sub("meter"), folder, scenario.meter);
-  read_meter_fault(sub("meter_fault"), scenario);
-  read_battery_faults(table, scenario, sub,
-                      [&](const char* key, const auto& read) { each(table, key, read); });
-  read_price_fault(sub("price_fault"), scenario);
-  read_day_ahead(sub("day_ahead"), folder, scenario);
-  each(table, "event", [&](TomlTable event) { read_event(std::move(event), scenario); });
-  each(table, "expect", [&](TomlTable expect) { read_expectation(std::move(expect), scenario); });
-  read_edge(sub("edge"), scenario);
-  read_judge(sub("judge"), scenario);
+  read_battery(sub(table, "battery"), folder, scenario.battery);
+  read_prices(sub(table, "prices"), folder, scenario);
+  read_house(sub(table, "house"), scenario);
+  read_meter(sub(table, "meter"), folder, scenario.meter);
+  read_meter_fault(sub(table, "meter_fault"), scenario);
+  read_battery_faults(table, scenario);
+  read_price_fault(sub(table, "price_fault"), scenario);
+  read_day_ahead(sub(table, "day_ahead"), folder, scenario);
+  each(table, "event", scenario, read_event);
+  each(table, "expect", scenario, read_expectation);
+  read_edge(sub(table, "edge"), scenario);
+  read_judge(sub(table, "judge"), scenario);
   std::ranges::stable_sort(scenario.events, {}, &ScenarioEvent::at_min);
-  read_same_without(sub("same_without"), scenario);
+  read_same_without(sub(table, "same_without"), scenario);
   check_site(table, scenario);
   check_events(table, scenario);
   table.finish();
