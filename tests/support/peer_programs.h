@@ -49,8 +49,8 @@ inline std::string port_in(const std::string& ready) {
 /// Options of a peer: the site's simulated time.
 template <typename Site>
 std::vector<std::string> simulated_time_of(const Site& site) {
-  return {"--scale",     std::to_string(site.clock.time_scale),
-          "--start-s",   std::to_string(site.clock.start_utc_s),
+  return {"--scale",     std::to_string(site.clock.scale),
+          "--start-s",   std::to_string(site.clock.anchor_utc_s),
           "--anchor-ns", std::to_string(site.anchor_ns())};
 }
 

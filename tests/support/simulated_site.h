@@ -30,7 +30,7 @@ class SimulatedSite : public FolderOfASite, public SitePrograms {
 
   /// Simulated time starts half a second from now.
   explicit SimulatedSite(std::int32_t time_scale) : SitePrograms(sim_program(), folder.file("")) {
-    clock = {.start_utc_s = kStartS, .time_scale = time_scale};
+    clock = {.anchor_utc_s = kStartS, .scale = time_scale};
     start_clock();
   }
 

@@ -28,7 +28,7 @@ class OutlookSite : public SiteTest {
  protected:
   OutlookSite() : SiteTest(300) {
     setenv("BESS_EDGE_UNDER_TEST", BESS_OUTLOOK_EDGE, 1);
-    site_.clock.start_utc_s = kPublishedS - 40 * 60;
+    site_.clock.anchor_utc_s = kPublishedS - 40 * 60;
     site_.start_clock();
     site_.start_battery({"--map", BESS_SOURCE_DIR "/edge/device/maps/alphaess.toml"});
   }

@@ -43,7 +43,7 @@ class FetchFromSimulatedAuction : public TrainCommands {
   /// From a market that has just started.
   Result fetch(const std::vector<std::string>& more = {}) {
     SitePrograms site(BESS_SIM_PROGRAM, path(""));
-    site.clock = {.start_utc_s = kStartS};
+    site.clock = {.anchor_utc_s = kStartS};
     site.start_market(
         joined({"--prices", path("minutes.csv"), "--day-ahead", path("da.csv")}, more));
     return fetch_from(site.market_port);

@@ -41,7 +41,7 @@ struct EdgePlaces {
   std::string battery_link;  ///< TOML for a real battery; empty: simulated
   int market_port = 1;
   int meter_port = 2;
-  std::optional<SiteClock> clock{};  ///< empty: virtual time
+  std::optional<ScaledClock> clock{};  ///< empty: virtual time
 };
 
 /// Price level of the hours before the start; by default as many as the edge requests.

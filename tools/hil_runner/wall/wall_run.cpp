@@ -292,7 +292,7 @@ class WallRun {
 
   Evidence run() {
     write_minute_file(folder_.file("minutes.csv"), prices_, "");
-    programs_.clock = {.start_utc_s = scenario_.start_utc_s, .time_scale = scenario_.time_scale};
+    programs_.clock = {.anchor_utc_s = scenario_.start_utc_s, .scale = scenario_.time_scale};
     programs_.start_clock(kStartUpS);
     if (real_run_) return run_on_real_battery();
     if (scenario_.battery.rtu) line_.emplace();

@@ -4,35 +4,13 @@
 
 #include <fmt/core.h>
 
-#include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
+#include "shared/scaled_clock.h"
 #include "shared/utc_text.h"
 
 namespace bess {
-
-// Simulated clock that all programs of the testbed share.
-
-struct SiteClock {
-  std::int64_t start_utc_s = 0;
-  std::int32_t time_scale = 1;           ///< simulated seconds per second
-  std::int64_t anchor_monotonic_ns = 0;  ///< CLOCK_MONOTONIC at the start
-
-  /// For bess-sim.
-  [[nodiscard]] std::vector<std::string> options() const {
-    return {"--utc-start",           std::string(utc_text(start_utc_s).view()),
-            "--time-scale",          std::to_string(time_scale),
-            "--anchor-monotonic-ns", std::to_string(anchor_monotonic_ns)};
-  }
-  /// For bess-edge.
-  [[nodiscard]] std::string table() const {
-    return fmt::format(
-        "[simulation]\ntime_scale = {}\nutc_start = \"{}\"\nanchor_monotonic_ns = {}\n", time_scale,
-        utc_text(start_utc_s).view(), anchor_monotonic_ns);
-  }
-};
 
 /// Lines of TOML by table, each with its line end.
 struct ControllerSettings {
@@ -44,7 +22,7 @@ struct ControllerSettings {
   std::string state = "folder = \"state\"\n";
   std::string tables{};  ///< complete tables
   std::string csv = "edge.csv";
-  std::optional<SiteClock> clock{};
+  std::optional<ScaledClock> clock{};  ///< of all programs of the testbed
 };
 
 /// URL of a dataset of bess-sim market, such as "http://127.0.0.1:8080" and "ods161".
@@ -59,7 +37,11 @@ inline std::string controller_settings(const ControllerSettings& s) {
   text += fmt::format("[price]\nurl = \"{}\"\n{}", records_url(s.market, "ods161"), s.price);
   text += fmt::format("[guard]\n{}[state]\n{}{}", s.guard, s.state, s.tables);
   text += fmt::format("[log]\ncsv = \"{}\"\n", s.csv);
-  return s.clock ? text + s.clock->table() : text;
+  if (!s.clock) return text;
+  return text + fmt::format(
+                    "[simulation]\ntime_scale = {}\nutc_start = \"{}\"\nanchor_monotonic_ns = {}\n",
+                    s.clock->scale, utc_text(s.clock->anchor_utc_s).view(),
+                    s.clock->anchor_monotonic_ns);
 }
 
 }  // namespace bess

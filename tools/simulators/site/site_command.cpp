@@ -91,11 +91,8 @@ void run_site(const SiteOptions& options) {
       options.program.empty() ? fs::read_symlink("/proc/self/exe").string() : options.program;
   SitePrograms programs(program, options.folder);
   fs::remove(programs.file("edge.toml"));  // of an earlier run; its presence shows that both listen
-  programs.clock = {.start_utc_s = clock.anchor_utc_s, .time_scale = clock.scale};
-  programs.start_clock(options.in_s);
-  if (options.clock.anchor_monotonic_ns != 0) {
-    programs.clock.anchor_monotonic_ns = options.clock.anchor_monotonic_ns;
-  }
+  programs.clock = clock;
+  if (options.clock.anchor_monotonic_ns == 0) programs.start_clock(options.in_s);
   std::vector<std::string> battery = words_of(options.battery);
   battery.insert(battery.begin(), {"--map", options.map});
   programs.start_battery(battery);

@@ -9,6 +9,7 @@
 
 #include "shared/host/user_error.h"
 #include "shared/scaled_clock.h"
+#include "shared/utc_text.h"
 
 namespace bess {
 namespace {
@@ -98,8 +99,10 @@ void SitePrograms::start_market(const std::vector<std::string>& options) {
 std::unique_ptr<ChildProcess> SitePrograms::start(const std::string& name,
                                                   const std::vector<std::string>& options) {
   std::vector<std::string> arguments = {simulators_, name};
-  const std::vector<std::string> shared = clock.options();
-  arguments.insert(arguments.end(), shared.begin(), shared.end());
+  arguments.insert(arguments.end(),
+                   {"--utc-start", utc_text(clock.anchor_utc_s).c_str(), "--time-scale",
+                    std::to_string(clock.scale), "--anchor-monotonic-ns",
+                    std::to_string(clock.anchor_monotonic_ns)});
   arguments.insert(arguments.end(), options.begin(), options.end());
   std::error_code ignored;
   std::filesystem::remove(log_of(name), ignored);  // of an earlier run in this folder

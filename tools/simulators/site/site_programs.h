@@ -47,7 +47,7 @@ class SitePrograms {
   /// Log of the newest "battery" or "market".
   [[nodiscard]] std::string log_of(const std::string& name) const;
 
-  SiteClock clock;
+  ScaledClock clock;
   // No process listens on port 1.
   int battery_port = 1;
   int meter_port = 1;
