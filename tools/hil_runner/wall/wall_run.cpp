@@ -383,23 +383,35 @@ class WallRun {
       case kEdgeContinue:
         return edge_.signal(SIGCONT);
       case kBatteryPause:
+        return signal(*programs_.battery, SIGSTOP);
       case kBatteryContinue:
+        return signal(*programs_.battery, SIGCONT);
       case kMarketPause:
+        return signal(*programs_.market, SIGSTOP);
       case kMarketContinue:
+        return signal(*programs_.market, SIGCONT);
       case kMarketKill:
+        return kill_market();
       case kMarketStart:
-        return apply_to_simulators(event);
+        return start_market();
       case kDiskFull:
         return disk_->fill();
       case kStateLost:
         return lose_state();
       case kHold:
+        return edge_.say({"hold", std::to_string(event.power_w), "--for", seconds_text(event)});
       case kHoldRelease:
+        return edge_.say({"hold", "--release"});
       case kLimit:
+        return edge_.say({"limit", "--charge", limit_power_text(event.charge_w), "--discharge",
+                          limit_power_text(event.discharge_w), "--for", seconds_text(event)});
       case kLimitClear:
+        return edge_.say({"limit", "--clear"});
       case kLimitTorn:
+        return write_file(edge_.config().site.limit_file.c_str(),
+                          limit_line(event, edge_.now_utc_s()));
       case kClear:
-        return say(event);
+        return edge_.say({"clear", "--yes"});
       case kClockStep:
       case kClockUnsynchronised:
       case kClockSynchronised:
@@ -417,37 +429,11 @@ class WallRun {
     }
   }
 
-  void apply_to_simulators(const ScenarioEvent& event) {
-    using enum ScenarioEvent::EventKind;
-    const bool is_battery = event.kind == kBatteryPause || event.kind == kBatteryContinue;
-    const auto& process = is_battery ? programs_.battery : programs_.market;
-    if (event.kind == kMarketStart) return start_market();
-    if (process == nullptr) return;
-    const bool is_pause = event.kind == kBatteryPause || event.kind == kMarketPause;
-    process->signal(event.kind == kMarketKill ? SIGKILL : is_pause ? SIGSTOP : SIGCONT);
-    if (event.kind != kMarketKill) return;
-    process->wait();
+  static void signal(const ChildProcess& process, int number) { process.signal(number); }
+  void kill_market() {
+    signal(*programs_.market, SIGKILL);
+    programs_.market->wait();
     market_is_dead_ = true;
-  }
-
-  void say(const ScenarioEvent& event) const {
-    using enum ScenarioEvent::EventKind;
-    switch (event.kind) {
-      case kHold:
-        return edge_.say({"hold", std::to_string(event.power_w), "--for", seconds_text(event)});
-      case kHoldRelease:
-        return edge_.say({"hold", "--release"});
-      case kLimit:
-        return edge_.say({"limit", "--charge", limit_power_text(event.charge_w), "--discharge",
-                          limit_power_text(event.discharge_w), "--for", seconds_text(event)});
-      case kLimitClear:
-        return edge_.say({"limit", "--clear"});
-      case kLimitTorn:
-        return write_file(edge_.config().site.limit_file.c_str(),
-                          limit_line(event, edge_.now_utc_s()));
-      default:
-        return edge_.say({"clear", "--yes"});
-    }
   }
 
   Evidence end() {
