@@ -353,7 +353,6 @@ class WallRun {
       options.insert(options.end(), {"--port", std::to_string(programs_.market_port)});
     }
     programs_.start_market(options);
-    market_is_dead_ = false;
   }
   void start_edge() { edge_.start(real_run_ ? real_run_->next_recording() : ""); }
 
@@ -391,7 +390,9 @@ class WallRun {
       case kMarketContinue:
         return signal(*programs_.market, SIGCONT);
       case kMarketKill:
-        return kill_market();
+        signal(*programs_.market, SIGKILL);
+        programs_.market->wait();
+        return;
       case kMarketStart:
         return start_market();
       case kDiskFull:
@@ -430,11 +431,6 @@ class WallRun {
   }
 
   static void signal(const ChildProcess& process, int number) { process.signal(number); }
-  void kill_market() {
-    signal(*programs_.market, SIGKILL);
-    programs_.market->wait();
-    market_is_dead_ = true;
-  }
 
   Evidence end() {
     real_run_ ? real_run_->give_back() : edge_.end(SIGTERM);
@@ -456,7 +452,8 @@ class WallRun {
   /// True if they ran until now and ended normally.
   bool end_simulators() {
     const bool has_battery = real_run_ || SitePrograms::stop(*programs_.battery) == 0;
-    return (market_is_dead_ || SitePrograms::stop(*programs_.market) == 0) && has_battery;
+    const bool market_is_dead = programs_.market->pid() < 0;
+    return (market_is_dead || SitePrograms::stop(*programs_.market) == 0) && has_battery;
   }
 
   const Scenario& scenario_;
@@ -466,7 +463,6 @@ class WallRun {
   std::optional<SmallDisk> disk_;
   std::optional<PtyBridge> line_;
   SitePrograms programs_;
-  bool market_is_dead_ = false;
   EdgeProcess edge_;
   std::optional<RealDeviceRun> real_run_;
   std::string battery_link_;  ///< TOML for the link of a real one
