@@ -144,6 +144,18 @@ constexpr std::uint32_t student_weights_hash(const StudentNet& net) {
   return crc.value();
 }
 
+/// Quartile (1 to 3) of the training prices, whole EUR/MWh, from the price map: half their
+/// distribution, half a straight line over the lattice (workstation/policy/rl/price_map.h).
+constexpr std::int32_t learnt_price_quartile(const StudentNet& net, int quartile) {
+  constexpr std::int32_t kSteps = kPriceCount - 1;
+  for (std::int32_t step = 0; step < kSteps; ++step) {
+    // In units of 1 / (kInputOne * kSteps).
+    const std::int32_t share = 2 * kSteps * net.price_map[step] - kInputOne * step;
+    if (4 * share >= quartile * kInputOne * kSteps) return kLatticePriceMinEurPerMwh + step;
+  }
+  return kLatticePriceMaxEurPerMwh;
+}
+
 /// Golden state and its logits, in the weight header; checked at every start.
 struct StudentSelfCheck {
   LatticeState state;

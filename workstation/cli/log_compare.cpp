@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "shared/nn/learnt_prices.h"
+#include "shared/nn/student_net.h"
 #include "workstation/base/answer.h"
 #include "workstation/cli/commands.h"
 #include "workstation/runs/log/log_comparison.h"

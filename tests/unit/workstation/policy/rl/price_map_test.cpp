@@ -1,6 +1,6 @@
 #include "workstation/policy/rl/price_map.h"
 
-#include "shared/nn/learnt_prices.h"
+#include "shared/nn/student_net.h"
 #include "tests/support/tokens.h"
 #include "tests/unit/workstation/policy/rl/market_by_hand.h"
 #include "workstation/base/random.h"
