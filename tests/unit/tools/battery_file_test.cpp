@@ -1,12 +1,11 @@
 // [battery] of a configuration, as the simulator reads it.
-#include "tools/simulators/battery_sim/battery_command.h"
-
 #include <gmock/gmock.h>
 
 #include "shared/battery_keys.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 #include "tests/support/user_error_of.h"
+#include "tools/simulators/sim/commands.h"
 
 namespace bess {
 namespace {

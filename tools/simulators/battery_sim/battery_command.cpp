@@ -1,6 +1,4 @@
 // bess-sim battery: options and composition.
-#include "tools/simulators/battery_sim/battery_command.h"
-
 #include <fcntl.h>
 #include <fmt/core.h>
 #include <unistd.h>

@@ -1,6 +1,9 @@
 // Subcommands of bess-sim: each declares its options and help, and runs as a callback.
 #pragma once
 
+#include <string>
+
+#include "shared/battery_model.h"
 #include "shared/host/command_line.h"
 
 namespace bess {
@@ -9,5 +12,9 @@ void add_battery_command(ProgramCommand& app);
 void add_market_command(ProgramCommand& app);
 void add_settle_command(ProgramCommand& app);
 void add_site_command(ProgramCommand& app);
+
+/// Battery of `bess-sim battery --battery`: reads the keys of shared/battery_keys.h in [battery] of
+/// a configuration. Throws UserError naming file, line and key.
+void read_battery_file(const std::string& path, BatteryParameters& battery);
 
 }  // namespace bess
