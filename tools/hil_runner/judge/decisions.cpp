@@ -10,7 +10,6 @@
 #include "shared/outlook/outlook_plan.h"
 #include "shared/utc_text.h"
 #include "tools/hil_runner/judge/judge_context.h"
-#include "tools/hil_runner/scenario/day_ahead.h"
 
 namespace bess {
 

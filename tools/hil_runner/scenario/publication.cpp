@@ -1,11 +1,16 @@
 #include "tools/hil_runner/scenario/publication.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "shared/host/file.h"
 #include "shared/host/user_error.h"
+#include "shared/local_time.h"
 #include "shared/scaled_clock.h"
+#include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -35,6 +40,18 @@ MinuteSeries made_up_series(const Scenario& scenario) {
   return series;
 }
 
+double made_up_day_ahead(std::int64_t utc_s) {
+  const LocalMinute local = local_minute_of(utc_s);
+  const int hour = local.minute_of_day / 60;
+  const std::int64_t day =
+      utc_from_civil({local.year, local.month, local.day, 0, 0, 0}) / kSecondsPerDay;
+  const double of_hour = hour >= 18 && hour < 21   ? 110
+                         : hour >= 11 && hour < 16 ? -70
+                         : hour >= 7 && hour < 10  ? 60
+                                                   : 0;
+  return 80 + of_hour + 9 * static_cast<double>(day % 7) + 2 * (local.quarter_hour % 4);
+}
+
 }  // namespace
 
 MinuteSeries scenario_prices(const Scenario& scenario) {
@@ -56,6 +73,23 @@ MinuteSeries scenario_prices(const Scenario& scenario) {
     }
   }
   return series;
+}
+
+std::string day_ahead_csv(const Scenario& scenario) {
+  if (!scenario.day_ahead_file.empty()) return read_file(scenario.day_ahead_file);
+  std::string csv = "quarter_hour_utc,day_ahead_eur_mwh,resolution_min,published_utc\n";
+  const std::int64_t end_utc_s = scenario.end_utc_ns() / kNanosecondsPerSecond + 2 * kSecondsPerDay;
+  for (std::int64_t t = local_midnight_utc_s(scenario.start_utc_s, -1); t < end_utc_s;
+       t += kSecondsPerQuarterHour) {
+    csv += fmt::format("{},{:.2f},15,\n", utc_text(t).view(), made_up_day_ahead(t));
+  }
+  return csv;
+}
+
+std::vector<AuctionRow> day_ahead_rows(const Scenario& scenario) {
+  return parse_auction_rows(day_ahead_csv(scenario), scenario.day_ahead_file.empty()
+                                                         ? scenario.path
+                                                         : scenario.day_ahead_file);
 }
 
 Publication::Publication(const Scenario& scenario, const MinuteSeries& prices)

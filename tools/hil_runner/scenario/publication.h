@@ -1,9 +1,11 @@
-// Prices of a scenario: the minute series of the market, and the rows available to the edge at an
-// instant, for the judge.
+// Prices of a scenario: the minute series of the market, the rows available to the edge at an
+// instant, for the judge, and day-ahead prices.
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "shared/host/minute_file.h"
 #include "tools/hil_runner/scenario/scenario.h"
@@ -13,6 +15,12 @@ namespace bess {
 /// Minutes from four days before the start to the end; unpublished rows have no price. Throws
 /// UserError if the scenario's file does not contain its time.
 MinuteSeries scenario_prices(const Scenario& scenario);
+
+/// File of the scenario; else synthetic prices from the local day before the start to two days
+/// after the end, with a morning, noon and evening pattern, a level by date, and distinct
+/// quarter-hours.
+std::string day_ahead_csv(const Scenario& scenario);
+std::vector<AuctionRow> day_ahead_rows(const Scenario& scenario);
 
 class Publication {
  public:

@@ -7,7 +7,6 @@
 #include "shared/scaled_clock.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
-#include "tools/hil_runner/scenario/day_ahead.h"
 #include "tools/hil_runner/scenario/rules.h"
 #include "tools/hil_runner/scenario/scenario_parts.h"
 #include "tools/hil_runner/scenario/scenario_reader.h"

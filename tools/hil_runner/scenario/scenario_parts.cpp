@@ -100,6 +100,27 @@ void read_meter_fault(TomlTable table, Scenario& scenario) {
   table.finish();
 }
 
+void read_day_ahead(TomlTable table, const fs::path& folder, Scenario& scenario) {
+  if (table.value() == nullptr) return;
+  AuctionSettings& auction = scenario.day_ahead.emplace();
+  auction.start_utc_s = scenario.start_utc_s;
+  if (const std::string* const file = table.text("file")) {
+    scenario.day_ahead_file = (folder / *file).string();
+  }
+  int fault = 0;
+  table.choice("fault", fault, kAuctionFaultNames);
+  auction.fault = static_cast<AuctionFault>(fault);
+  for (const char* key : {"every", "from_min", "to_min", "mend_min"}) {
+    if (fault == 0 && table.has(key)) table.fail(key, "requires a fault");
+  }
+  read_fault_span(table, scenario.minutes, auction);
+  table.integer("every", auction.every, 1, 1'000'000);
+  double mend_min = 0;
+  read_decimal(table, "mend_min", mend_min, 0, kScenarioMinutesMax);
+  if (table.has("mend_min")) auction.repair_s = 60 * mend_min;
+  table.finish();
+}
+
 void check_site(TomlTable& root, const Scenario& scenario) {
   using enum ScenarioMeter::Source;
   const bool has_meter = scenario.meter.source != kNone;

@@ -29,6 +29,10 @@ void read_meter_fault(TomlTable table, Scenario& scenario);
 /// Refuses a house without a meter and the reverse, and settings without their device.
 void check_site(TomlTable& root, const Scenario& scenario);
 
+/// Table [day_ahead]: published day-ahead prices and their faults, for a student with context
+/// outlook. A relative `file` is in `folder`, that of the scenario.
+void read_day_ahead(TomlTable table, const std::filesystem::path& folder, Scenario& scenario);
+
 // Tables [[event]] of a scenario.
 
 void read_event(TomlTable table, Scenario& scenario);

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "shared/scaled_clock.h"
-#include "tools/hil_runner/scenario/day_ahead.h"
+#include "tools/hil_runner/scenario/publication.h"
 
 namespace bess {
 
