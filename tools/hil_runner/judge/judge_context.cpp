@@ -98,9 +98,10 @@ bool JudgeContext::is_lost(std::int64_t tick_ns) const {
   });
 }
 
-bool JudgeContext::has_stood(const Publication::Row& row, std::int64_t for_s) const {
-  const std::int64_t first_utc_s = row.minute_utc_s - for_s;
-  if (first_utc_s < scenario.start_utc_s - 60) return false;
+bool JudgeContext::has_stood(const Publication::Row& row, std::int64_t longer_s) const {
+  const std::int32_t stop_s = config.control.frozen_price.stop_s;
+  const std::int64_t first_utc_s = row.minute_utc_s - stop_s - longer_s;
+  if (stop_s == 0 || first_utc_s < scenario.start_utc_s - 60) return false;
   for (std::int64_t utc_s = first_utc_s; utc_s < row.minute_utc_s; utc_s += 60) {
     const auto price = publication.price_of(utc_s);
     if (price && *price != row.eur_per_mwh) return false;
@@ -124,16 +125,6 @@ bool JudgeContext::may_stand_in(std::int64_t tick_ns) const {
   return row && guard.stand_in_s_max > 0 &&
          price_age_s(tick_ns / kSecondNs, row->minute_utc_s) <=
              guard.price_age_s_max + guard.stand_in_s_max;
-}
-
-bool JudgeContext::may_be_frozen(const Publication::Row& row) const {
-  const std::int32_t stop_s = config.control.frozen_price.stop_s;
-  return stop_s > 0 && has_stood(row, stop_s);
-}
-
-bool JudgeContext::must_be_frozen(const Publication::Row& row) const {
-  const std::int32_t stop_s = config.control.frozen_price.stop_s;
-  return stop_s > 0 && has_stood(row, stop_s + 2 * kSecondsPerStep);
 }
 
 double JudgeContext::soc_at(std::int64_t utc_ns) const {

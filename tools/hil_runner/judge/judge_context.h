@@ -73,8 +73,10 @@ class JudgeContext {
   /// Without a fresh price: whether a stand-in price is allowed.
   [[nodiscard]] bool may_stand_in(std::int64_t tick_ns) const;
   /// Whether the edge may, or must, treat the price as frozen; they differ by the rows it fetched.
-  [[nodiscard]] bool may_be_frozen(const Publication::Row& row) const;
-  [[nodiscard]] bool must_be_frozen(const Publication::Row& row) const;
+  [[nodiscard]] bool may_be_frozen(const Publication::Row& row) const { return has_stood(row, 0); }
+  [[nodiscard]] bool must_be_frozen(const Publication::Row& row) const {
+    return has_stood(row, 2 * kSecondsPerStep);
+  }
   [[nodiscard]] double soc_at(std::int64_t utc_ns) const;
   [[nodiscard]] CommandInForce command_at(std::int64_t utc_ns) const {
     return bess::command_at(evidence.orders, utc_ns);
@@ -102,7 +104,8 @@ class JudgeContext {
   void add_disturbance(const Window& span, bool is_loss);
   void add_spans(std::initializer_list<ScenarioEvent::EventKind> begin,
                  ScenarioEvent::EventKind end, bool is_loss);
-  [[nodiscard]] bool has_stood(const Publication::Row& row, std::int64_t for_s) const;
+  /// Whether the price has stood still for the limit of the edge and longer.
+  [[nodiscard]] bool has_stood(const Publication::Row& row, std::int64_t longer_s) const;
   [[nodiscard]] bool device_has_soc_limits() const;
 
   std::vector<Window> disturbed_;
