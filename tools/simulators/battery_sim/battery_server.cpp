@@ -217,9 +217,8 @@ void BatteryServer::serve(Client& client) {
 BusExchange BatteryServer::recorded_answer(const BusRequest& request) {
   BusExchange exchange;
   const std::int64_t now_ns = clock_.now_utc_ns();
-  if (!has_begun_ && clock_.is_real_time()) shift_ns_ = recorded_->first_utc_ns() - now_ns;
-  has_begun_ = true;
-  exchange.utc_ns = now_ns + shift_ns_;
+  if (!shift_ns_) shift_ns_ = clock_.is_real_time() ? recorded_->first_utc_ns() - now_ns : 0;
+  exchange.utc_ns = now_ns + *shift_ns_;
   if (!read_request(request, exchange)) {
     exchange.outcome = BusOutcome::kException;
     exchange.exception = kIllegalFunction;

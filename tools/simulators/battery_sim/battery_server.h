@@ -85,8 +85,8 @@ class BatteryServer {
   bool rtu_;
   const RegisterMap& map_;
   RecordedDevice* recorded_ = nullptr;  ///< null: the registers answer
-  std::int64_t shift_ns_ = 0;           ///< from now to the time of the recording
-  bool has_begun_ = false;              ///< the recording
+  /// From now to the time of the recording; empty: it has not begun.
+  std::optional<std::int64_t> shift_ns_;
   ScaledClock clock_;
   ModbusContext context_;
   std::optional<FaultyDevice> device_;
