@@ -115,7 +115,7 @@ class DayRows {
       if (!has_price(rows_[i])) continue;
       const std::int64_t sure_end = sure_end_of(i);
       const bool is_last = i + 1 == rows_.size();
-      const std::int64_t next = is_last ? end_utc_s_ : rows_[i + 1].utc_s;
+      const std::int64_t next = next_of(i);
       const bool is_assumed_until_next =
           may_go_on(i) && (!is_last || goes_on) && next - rows_[i].utc_s <= kAssumedMaxS;
       const int resolution_min = resolution_of(i);
