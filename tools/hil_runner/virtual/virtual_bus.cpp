@@ -1,6 +1,7 @@
 #include "tools/hil_runner/virtual/virtual_bus.h"
 
 #include <algorithm>
+#include <map>
 
 #include "shared/host/user_error.h"
 #include "shared/scaled_clock.h"
@@ -8,9 +9,9 @@
 namespace bess {
 namespace {
 
-/// All existing buses.
-std::vector<std::pair<std::int32_t, VirtualBus*>>& buses() {
-  static std::vector<std::pair<std::int32_t, VirtualBus*>> all;
+/// All existing buses by their port.
+std::map<std::int32_t, VirtualBus*>& buses() {
+  static std::map<std::int32_t, VirtualBus*> all;
   return all;
 }
 
@@ -33,18 +34,14 @@ VirtualBus::VirtualBus(const VirtualBusSettings& settings, const RegisterMap& ma
       context_(make_context(settings.rtu, map.unit)),
       device_(map, battery, context_.get(), settings.faults, settings.rtu, settings.start_utc_ns,
               house) {
-  buses().emplace_back(settings.port, this);
+  buses().emplace(settings.port, this);
 }
 
-VirtualBus::~VirtualBus() {
-  std::erase_if(buses(), [this](const auto& bus) { return bus.second == this; });
-}
+VirtualBus::~VirtualBus() { buses().erase(settings_.port); }
 
 VirtualBus* VirtualBus::at(std::int32_t port) {
-  for (const auto& [at, bus] : buses()) {
-    if (at == port) return bus;
-  }
-  return nullptr;
+  const auto found = buses().find(port);
+  return found == buses().end() ? nullptr : found->second;
 }
 
 Status VirtualBus::open() {
