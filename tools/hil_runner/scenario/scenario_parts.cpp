@@ -236,25 +236,6 @@ void check_order_of_events(TomlTable& table, const Scenario& scenario) {
   }
 }
 
-/// Events for one of the two times only, and values that the edge refuses.
-void check_times(TomlTable& table, const Scenario& scenario) {
-  using enum ScenarioEvent::EventKind;
-  for (const ScenarioEvent& event : scenario.events) {
-    if (std::abs(event.power_w) > scenario.battery.physics.power_w_max) {
-      table.fail("event", fmt::format("hold: {} W exceeds the {:g} W of the battery", event.power_w,
-                                      scenario.battery.physics.power_w_max));
-    }
-    const bool of_clock = event.kind == kClockStep || event.kind == kClockUnsynchronised ||
-                          event.kind == kClockSynchronised;
-    if (of_clock && scenario.runs_wall) {
-      table.fail("time", "must be \"virtual\": wall time cannot step the clock");
-    }
-    if (event.kind == kDiskFull && scenario.runs_virtual) {
-      table.fail("time", "must be \"wall\": virtual time has no disk");
-    }
-  }
-}
-
 }  // namespace
 
 std::string_view event_name(ScenarioEvent::EventKind kind) {
@@ -284,7 +265,21 @@ void read_event(TomlTable table, Scenario& scenario) {
 }
 
 void check_events(TomlTable& root, const Scenario& scenario) {
-  check_times(root, scenario);
+  using enum ScenarioEvent::EventKind;
+  for (const ScenarioEvent& event : scenario.events) {
+    if (std::abs(event.power_w) > scenario.battery.physics.power_w_max) {
+      root.fail("event", fmt::format("hold: {} W exceeds the {:g} W of the battery", event.power_w,
+                                     scenario.battery.physics.power_w_max));
+    }
+    const bool of_clock = event.kind == kClockStep || event.kind == kClockUnsynchronised ||
+                          event.kind == kClockSynchronised;
+    if (of_clock && scenario.runs_wall) {
+      root.fail("time", "must be \"virtual\": wall time cannot step the clock");
+    }
+    if (event.kind == kDiskFull && scenario.runs_virtual) {
+      root.fail("time", "must be \"wall\": virtual time has no disk");
+    }
+  }
   check_order_of_events(root, scenario);
 }
 
