@@ -52,36 +52,6 @@ std::string place_of(const BatteryServerSettings& settings, const BatteryServer&
                                         : settings.serial_device;
 }
 
-struct ReplayOptions {
-  std::string path;  ///< empty: no replay
-  bool accept_cut = false;
-};
-
-/// Serves a recorded device instead of a simulated one, until stopped.
-void run_replay(const ReplayOptions& options, const BatteryServerSettings& server,
-                const ClockOptions& clock_options) {
-  const StopSignal stop;
-  const ScaledClock clock = clock_options.clock();
-  RecordedDevice device(options.path,
-                        options.accept_cut ? CutRecording::kAccepted : CutRecording::kRefused);
-  static RegisterMap no_points;  // the recording answers
-  no_points.unit = device.head().unit;
-  SimulatedBattery unused({}, 0.5, clock.now_utc_ns());
-  BatteryServer battery(server, no_points, unused, clock);
-  battery.replay(device);
-  const std::string place = place_of(server, battery);
-  std::printf(
-      "bess-sim battery: listening on %s, unit %d, replaying %s, %s, %lld exchanges from %s to "
-      "%s%s\n",
-      place.c_str(), device.head().unit, options.path.c_str(), device.head().map.c_str(),
-      static_cast<long long>(device.exchanges()), time_text(device.first_utc_ns()).c_str(),
-      time_text(device.last_utc_ns()).c_str(),
-      clock.is_real_time() ? ", which begins at the first request" : "");
-  std::fflush(stdout);
-  battery.run(stop.fd());
-  std::printf("bess-sim battery: stopped\n");
-}
-
 /// Any free port, several clients; a meter fault applies for its whole time span.
 BatteryServerSettings meter_defaults() {
   BatteryServerSettings settings;
@@ -109,8 +79,33 @@ struct BatteryOptions {
   std::string meter_variant;
   BatteryServerSettings meter = meter_defaults();
   std::vector<std::string> meter_fault_names;
-  ReplayOptions replay;
+  std::string replay_path;  ///< empty: no replay
+  bool accept_cut = false;
 };
+
+/// Serves a recorded device instead of a simulated one, until stopped.
+void run_replay(const BatteryOptions& options) {
+  const StopSignal stop;
+  const ScaledClock clock = options.clock.clock();
+  RecordedDevice device(options.replay_path,
+                        options.accept_cut ? CutRecording::kAccepted : CutRecording::kRefused);
+  static RegisterMap no_points;  // the recording answers
+  no_points.unit = device.head().unit;
+  SimulatedBattery unused({}, 0.5, clock.now_utc_ns());
+  BatteryServer battery(options.server, no_points, unused, clock);
+  battery.replay(device);
+  const std::string place = place_of(options.server, battery);
+  std::printf(
+      "bess-sim battery: listening on %s, unit %d, replaying %s, %s, %lld exchanges from %s to "
+      "%s%s\n",
+      place.c_str(), device.head().unit, options.replay_path.c_str(), device.head().map.c_str(),
+      static_cast<long long>(device.exchanges()), time_text(device.first_utc_ns()).c_str(),
+      time_text(device.last_utc_ns()).c_str(),
+      clock.is_real_time() ? ", which begins at the first request" : "");
+  std::fflush(stdout);
+  battery.run(stop.fd());
+  std::printf("bess-sim battery: stopped\n");
+}
 
 std::string known_fault(const std::string& name) {
   return find_fault(name) != nullptr ? "" : "unknown fault " + name;
@@ -196,9 +191,7 @@ void require_consistent(const BatteryOptions& options) {
 }
 
 void run_battery(BatteryOptions& options) {
-  if (!options.replay.path.empty()) {
-    return run_replay(options.replay, options.server, options.clock);
-  }
+  if (!options.replay_path.empty()) return run_replay(options);
   const StopSignal stop;
   require_consistent(options);
   take_faults(options.fault_names, options.server);
@@ -361,12 +354,12 @@ void add_plant_options(ProgramCommand& command, BatteryOptions& options) {
                  "CSV file of every order and its end, written at exit");
 }
 
-void add_replay_options(ProgramCommand& command, ReplayOptions& replay) {
+void add_replay_options(ProgramCommand& command, BatteryOptions& options) {
   command.option(
-      "--replay", replay.path,
+      "--replay", options.replay_path,
       "replay a recording (bess-edge record) by address and time; other options of battery, "
       "house and faults are ignored");
-  command.flag("--accept-cut", replay.accept_cut,
+  command.flag("--accept-cut", options.accept_cut,
                "accept a recording that ends without its last line");
 }
 
@@ -410,7 +403,7 @@ void add_battery_command(ProgramCommand& app) {
   add_plant_options(command, *options);
   add_house_options(command, *options);
   add_fault_options(command, *options);
-  add_replay_options(command, options->replay);
+  add_replay_options(command, *options);
   command.runs([options] { run_battery(*options); });
 }
 
