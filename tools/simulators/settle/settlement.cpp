@@ -11,8 +11,6 @@
 namespace bess {
 namespace {
 
-constexpr double kWattHoursPerMegawattHour = 1e6;
-
 /// Throws UserError when the minute has no settled price.
 double settled_at(const MinuteSeries& prices, std::int64_t minute_utc_s) {
   const std::int64_t minute = (minute_utc_s - prices.start_utc_s) / 60;
@@ -22,10 +20,6 @@ double settled_at(const MinuteSeries& prices, std::int64_t minute_utc_s) {
   if (std::isnan(price)) fail("no settled price for {}", utc_text(minute_utc_s).view());
   return price;
 }
-
-struct Period {
-  std::int64_t begin_utc_s, end_utc_s;
-};
 
 /// Rows of control cycles, without the last row of a clean stop (release only).
 std::vector<std::size_t> cycle_rows(const CsvTable& log) {
@@ -38,15 +32,16 @@ std::vector<std::size_t> cycle_rows(const CsvTable& log) {
   return rows;
 }
 
-Account battery_account(const CsvTable& record, const Period& period, const MinuteSeries& prices,
-                        const BatteryParameters& battery) {
+/// From the first control cycle to the end of the last.
+Account battery_account(const CsvTable& record, std::int64_t begin_utc_s, std::int64_t end_utc_s,
+                        const MinuteSeries& prices, const BatteryParameters& battery) {
   const std::size_t minute = record.column("minute_utc");
   const std::size_t energy = record.column("energy_wh");
   const std::size_t soc = record.column("soc");
   Account account;
   for (std::size_t r = 0; r < record.row_count(); ++r) {
     const std::int64_t utc_s = record.utc_s(r, minute);
-    if (utc_s < period.begin_utc_s || utc_s >= period.end_utc_s) continue;
+    if (utc_s < begin_utc_s || utc_s >= end_utc_s) continue;
     account.add(battery, record.number(r, energy), settled_at(prices, utc_s));
     account.soc_end_frac = record.number(r, soc);
   }
@@ -91,8 +86,7 @@ Latency latency_of(const CsvTable& log, const std::vector<std::size_t>& rows,
 void Account::add(const BatteryParameters& battery, double energy_wh, double settled_eur_per_mwh) {
   charged_wh += std::max(energy_wh, 0.0);
   discharged_wh += std::max(-energy_wh, 0.0);
-  profit_eur -=
-      exchange_cost_eur(battery, energy_wh / kWattHoursPerMegawattHour, settled_eur_per_mwh);
+  profit_eur -= exchange_cost_eur(battery, energy_wh / kWattsPerMegawatt, settled_eur_per_mwh);
 }
 
 RunSettlement settle(const CsvTable& battery_record, const CsvTable& edge_log,
@@ -100,10 +94,10 @@ RunSettlement settle(const CsvTable& battery_record, const CsvTable& edge_log,
   const std::vector<std::size_t> rows = cycle_rows(edge_log);
   const std::size_t utc = edge_log.column("utc");
   const std::size_t mode = edge_log.column("mode");
-  const Period period{edge_log.utc_s(rows.front(), utc),
-                      edge_log.utc_s(rows.back(), utc) + kSecondsPerStep};
   RunSettlement result;
-  result.battery = battery_account(battery_record, period, prices, battery);
+  result.battery =
+      battery_account(battery_record, edge_log.utc_s(rows.front(), utc),
+                      edge_log.utc_s(rows.back(), utc) + kSecondsPerStep, prices, battery);
   result.edge = edge_account(edge_log, rows, prices, battery);
   result.cycles = rows.size();
   result.cycles_running = static_cast<std::size_t>(std::ranges::count_if(
