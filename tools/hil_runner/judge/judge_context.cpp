@@ -22,12 +22,8 @@ PriceLevel level_at_start(const JudgedRun& judged_run) {
 }  // namespace
 
 JudgeContext::JudgeContext(const JudgedRun& judged_run)
-    : scenario(judged_run.scenario),
-      config(judged_run.config),
-      evidence(judged_run.evidence),
-      publication(judged_run.scenario, judged_run.prices),
-      level(level_at_start(judged_run)) {
-  if (judged_run.scenario.house.exists()) house.emplace(house_load(judged_run.scenario));
+    : JudgedRun(judged_run), publication(scenario, prices), level(level_at_start(judged_run)) {
+  if (scenario.house.exists()) house.emplace(house_load(scenario));
   find_disturbances();
 }
 

@@ -29,7 +29,7 @@ inline std::string watts(const CommandInForce& command) {
   return command.is_driven ? fmt::format("{:.0f} W", command.power_w) : "no order";
 }
 
-class JudgeContext {
+class JudgeContext : public JudgedRun {
  public:
   /// All members of `judged_run` must outlive this object.
   explicit JudgeContext(const JudgedRun& judged_run);
@@ -89,9 +89,6 @@ class JudgeContext {
   [[nodiscard]] bool may_be_cut(double from_w, double to_w) const;
   [[nodiscard]] bool was_cut(std::int64_t tick_ns, std::int64_t by_ns, double ordered_w) const;
 
-  const Scenario& scenario;
-  const EdgeConfig& config;
-  const Evidence& evidence;
   const Publication publication;
   const PriceLevel level;  ///< at the start
   std::optional<HouseLoad> house;
