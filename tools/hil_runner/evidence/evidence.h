@@ -1,7 +1,6 @@
 // Evidence of a run: battery trace and decision log. The same in virtual and in wall time.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -38,20 +37,5 @@ struct Evidence {
   bool is_alive_at_end = false;       ///< simulators answered until they were stopped
   double slack_s = 0;                 ///< tolerated lateness of this machine, simulated s
 };
-
-// Command in force at any instant, from the battery trace.
-
-struct CommandInForce {
-  bool is_driven = false;  ///< follows an order; else its own mode
-  double power_w = 0;
-};
-
-inline CommandInForce command_at(const std::vector<DispatchEvent>& events, std::int64_t utc_ns) {
-  const auto next = std::ranges::upper_bound(events, utc_ns, {}, &DispatchEvent::utc_ns);
-  if (next == events.begin()) return {};
-  const DispatchEvent& last = *(next - 1);
-  if (last.kind != DispatchEvent::Kind::kOrder || last.duration_s <= 0) return {};
-  return {.is_driven = true, .power_w = last.power_w};
-}
 
 }  // namespace bess

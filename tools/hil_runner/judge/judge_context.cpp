@@ -130,6 +130,14 @@ double JudgeContext::soc_at(std::int64_t utc_ns) const {
   return next == minutes.begin() ? scenario.battery.soc_frac : (next - 1)->soc_frac;
 }
 
+CommandInForce JudgeContext::command_at(std::int64_t utc_ns) const {
+  const auto next = std::ranges::upper_bound(evidence.orders, utc_ns, {}, &DispatchEvent::utc_ns);
+  if (next == evidence.orders.begin()) return {};
+  const DispatchEvent& last = *(next - 1);
+  if (last.kind != DispatchEvent::Kind::kOrder || last.duration_s <= 0) return {};
+  return {.is_driven = true, .power_w = last.power_w};
+}
+
 bool JudgeContext::device_has_soc_limits() const {
   for (const CommandSequence& sequence : config.battery.map.command) {
     for (const BlockWrite& write : sequence.writes) {

@@ -25,6 +25,11 @@ struct Window {
   std::int64_t to_ns = INT64_MAX;
 };
 
+struct CommandInForce {
+  bool is_driven = false;  ///< follows an order; else its own mode
+  double power_w = 0;
+};
+
 inline std::string watts(const CommandInForce& command) {
   return command.is_driven ? fmt::format("{:.0f} W", command.power_w) : "no order";
 }
@@ -78,9 +83,8 @@ class JudgeContext : public JudgedRun {
     return has_stood(row, 2 * kSecondsPerStep);
   }
   [[nodiscard]] double soc_at(std::int64_t utc_ns) const;
-  [[nodiscard]] CommandInForce command_at(std::int64_t utc_ns) const {
-    return bess::command_at(evidence.orders, utc_ns);
-  }
+  /// From the battery trace.
+  [[nodiscard]] CommandInForce command_at(std::int64_t utc_ns) const;
   /// Tolerance of SoC limits: resolution of the device, or the energy of one control cycle.
   [[nodiscard]] double soc_margin_frac() const;
 
