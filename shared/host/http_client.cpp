@@ -38,6 +38,10 @@ enum Verdict : long {
   kUntrusted = 27
 };
 
+HttpOutcome failure(Kind kind, std::string reason) {
+  return {.kind = kind, .reason = std::move(reason)};
+}
+
 bool has(const std::string& text, const char* part) { return text.find(part) != text.npos; }
 
 std::string certificate_trouble(CURL* curl, const std::string& authorities) {
@@ -75,65 +79,69 @@ std::string connect_trouble(CURL* curl) {
   return std::string("no connection: ") + std::strerror(static_cast<int>(cause));
 }
 
-TransferTrouble handshake_trouble(const std::string& detail, const std::string& authorities) {
+HttpOutcome handshake_trouble(const std::string& detail, const std::string& authorities) {
   if (has(detail, "wrong version number") || has(detail, "packet length too long")) {
-    return {Kind::kRefused,
-            "TLS handshake failed: check the port, and that the server supports TLS"};
+    return failure(Kind::kRefused,
+                   "TLS handshake failed: check the port, and that the server supports TLS");
   }
   if (has(detail, "alert")) {
-    return {Kind::kRefused, "the server refused the TLS handshake: no common version or cipher"};
+    return failure(Kind::kRefused,
+                   "the server refused the TLS handshake: no common version or cipher");
   }
   if (has(detail, " routines::")) {
-    return {Kind::kRefused, "the TLS handshake failed (" + one_line(detail, kDetailMax) +
-                                "): check that the authority signed the server's certificate; " +
-                                authorities};
+    return failure(Kind::kRefused,
+                   "the TLS handshake failed (" + one_line(detail, kDetailMax) +
+                       "): check that the authority signed the server's certificate; " +
+                       authorities);
   }
-  return {
+  return failure(
       Kind::kUnreachable,
       "the server closed the connection in the TLS handshake: check that it supports TLS, and the "
-      "port"};
+      "port");
 }
 
 }  // namespace
 
-TransferTrouble transfer_trouble(void* curl, int code, const std::string& detail,
-                                 const std::string& authorities) {
+HttpOutcome transfer_trouble(void* curl, int code, const std::string& detail,
+                             const std::string& authorities) {
   const std::string words = one_line(
       detail.empty() ? curl_easy_strerror(static_cast<CURLcode>(code)) : detail, kDetailMax);
   switch (code) {
     case CURLE_COULDNT_RESOLVE_HOST:
     case CURLE_COULDNT_RESOLVE_PROXY:
-      return {Kind::kUnreachable, "unknown host name: check the name and the resolver"};
+      return failure(Kind::kUnreachable, "unknown host name: check the name and the resolver");
     case CURLE_COULDNT_CONNECT:
-      return {Kind::kUnreachable, connect_trouble(curl)};
+      return failure(Kind::kUnreachable, connect_trouble(curl));
     case CURLE_SSL_CONNECT_ERROR:
       return handshake_trouble(detail, authorities);
     case CURLE_PEER_FAILED_VERIFICATION:
-      return {Kind::kRefused, certificate_trouble(curl, authorities)};
+      return failure(Kind::kRefused, certificate_trouble(curl, authorities));
     case CURLE_SSL_CACERT_BADFILE:
-      return {Kind::kRefused, "the certificates of authorities cannot be read: " + authorities};
+      return failure(Kind::kRefused,
+                     "the certificates of authorities cannot be read: " + authorities);
     case CURLE_GOT_NOTHING:  // typical for TLS servers without TLS in the request
-      return {Kind::kTransient,
-              "the server closed the connection without an answer: check the port, and http:// or "
-              "https://"};
+      return failure(
+          Kind::kTransient,
+          "the server closed the connection without an answer: check the port, and http:// or "
+          "https://");
     case CURLE_OPERATION_TIMEDOUT:
-      return {Kind::kTransient, "no answer in time: check the host and firewalls"};
+      return failure(Kind::kTransient, "no answer in time: check the host and firewalls");
     case CURLE_PARTIAL_FILE:
     case CURLE_RECV_ERROR:
     case CURLE_SEND_ERROR:
     case CURLE_HTTP2:
     case CURLE_HTTP2_STREAM:
     case CURLE_BAD_CONTENT_ENCODING:
-      return {Kind::kTransient, words};
+      return failure(Kind::kTransient, words);
     case CURLE_ABORTED_BY_CALLBACK:
-      return {Kind::kInterrupted, words};
+      return failure(Kind::kInterrupted, words);
     case CURLE_UNSUPPORTED_PROTOCOL:
       if (has(detail, "HTTP/0.9")) {
-        return {Kind::kRefused, "the answer is not HTTP: use https:// instead of http://?"};
+        return failure(Kind::kRefused, "the answer is not HTTP: use https:// instead of http://?");
       }
-      return {Kind::kRefused, words};
+      return failure(Kind::kRefused, words);
     default:
-      return {Kind::kRefused, words};
+      return failure(Kind::kRefused, words);
   }
 }
 
@@ -259,10 +267,6 @@ std::vector<std::string> addresses_of(const Place& place) {
   return addresses;
 }
 
-HttpOutcome failure(Kind kind, std::string reason) {
-  return {.kind = kind, .reason = std::move(reason)};
-}
-
 /// Outcome of an incomplete transfer. `is_over`: the time of the request is used up.
 HttpOutcome outcome_of_failure(CURL* curl, CURLcode code, const Received& received,
                                const HttpRequest& request, const char* error_text, bool is_over) {
@@ -290,9 +294,8 @@ HttpOutcome outcome_of_failure(CURL* curl, CURLcode code, const Received& receiv
                              limits.bytes_per_s_min, limits.slow_s));
   }
   const bool is_silent = code == CURLE_RECV_ERROR && received.header_bytes == 0;
-  TransferTrouble trouble =
-      transfer_trouble(curl, is_silent ? CURLE_GOT_NOTHING : code, error_text, request.authorities);
-  return failure(trouble.kind, std::move(trouble.reason));
+  return transfer_trouble(curl, is_silent ? CURLE_GOT_NOTHING : code, error_text,
+                          request.authorities);
 }
 
 /// libcurl detects truncated frames, chunks or lengths, but not truncation of an HTTP/1 body that

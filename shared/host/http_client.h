@@ -74,14 +74,9 @@ std::optional<double> wait_seconds(const std::string& header_value, double now_u
 // Causes of incomplete transfers, with remedy and reaction of the caller: one table for all
 // programs. Messages never contain the address, which may be secret.
 
-struct TransferTrouble {
-  HttpOutcome::Kind kind;
-  std::string reason;  ///< one line
-};
-
-/// For a CURLcode other than CURLE_OK of a CURL*; `detail`: message of libcurl, may be empty;
-/// `authorities` as in HttpRequest.
-TransferTrouble transfer_trouble(void* curl, int code, const std::string& detail,
-                                 const std::string& authorities);
+/// Kind and reason for a CURLcode other than CURLE_OK of a CURL*; `detail`: message of libcurl, may
+/// be empty; `authorities` as in HttpRequest.
+HttpOutcome transfer_trouble(void* curl, int code, const std::string& detail,
+                             const std::string& authorities);
 
 }  // namespace bess
