@@ -156,10 +156,4 @@ constexpr std::int32_t learnt_price_quartile(const StudentNet& net, int quartile
   return kLatticePriceMaxEurPerMwh;
 }
 
-/// Golden state and its logits, in the weight header; checked at every start.
-struct StudentSelfCheck {
-  LatticeState state;
-  std::int32_t logits[kActionCount];
-};
-
 }  // namespace bess
