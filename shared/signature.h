@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 
 namespace bess {
 
@@ -12,6 +13,9 @@ class Signature {
     for (int byte = 0; byte < 8; ++byte) {
       hash_ = (hash_ ^ ((static_cast<std::uint64_t>(value) >> (8 * byte)) & 0xff)) * kPrime;
     }
+  }
+  void add(std::initializer_list<std::int64_t> values) {
+    for (const std::int64_t value : values) add(value);
   }
   [[nodiscard]] std::uint64_t value() const { return hash_; }
 

@@ -22,15 +22,12 @@ std::int64_t bits(double value) {
 
 void add(const CycleRecord& c, Signature& signature) {
   const BatteryMeasurement& m = c.measurement;
-  for (const std::int64_t part :
-       {c.utc_s, std::int64_t{c.has_measurement}, std::int64_t{m.soc_e4}, std::int64_t{m.power_w},
-        std::int64_t{c.price.has_row}, c.price.minute_utc_s,
-        std::int64_t{c.price.price_centi_eur_per_mwh}, std::int64_t{c.context_class},
-        std::int64_t{c.has_student_action}, static_cast<std::int64_t>(c.student_action),
-        std::int64_t{c.ordered_power_w}, static_cast<std::int64_t>(c.mode),
-        std::int64_t{c.written}}) {
-    signature.add(part);
-  }
+  signature.add({c.utc_s, std::int64_t{c.has_measurement}, std::int64_t{m.soc_e4},
+                 std::int64_t{m.power_w}, std::int64_t{c.price.has_row}, c.price.minute_utc_s,
+                 std::int64_t{c.price.price_centi_eur_per_mwh}, std::int64_t{c.context_class},
+                 std::int64_t{c.has_student_action}, static_cast<std::int64_t>(c.student_action),
+                 std::int64_t{c.ordered_power_w}, static_cast<std::int64_t>(c.mode),
+                 std::int64_t{c.written}});
   if (c.outlook.source != OutlookSource::kNone) {
     signature.add(static_cast<std::int64_t>(c.outlook.source));
     signature.add(c.outlook.break_even_centi);
@@ -43,15 +40,11 @@ void add(const CycleRecord& c, Signature& signature) {
 std::uint64_t signature_of(const Evidence& evidence) {
   Signature signature;
   for (const DispatchEvent& e : evidence.orders) {
-    for (const std::int64_t part : {e.utc_ns, static_cast<std::int64_t>(e.kind), bits(e.power_w),
-                                    e.duration_s, bits(e.soc_frac)}) {
-      signature.add(part);
-    }
+    signature.add({e.utc_ns, static_cast<std::int64_t>(e.kind), bits(e.power_w), e.duration_s,
+                   bits(e.soc_frac)});
   }
   for (const MinuteRecord& m : evidence.minutes) {
-    for (const std::int64_t part : {m.minute_utc_s, bits(m.energy_wh), bits(m.soc_frac)}) {
-      signature.add(part);
-    }
+    signature.add({m.minute_utc_s, bits(m.energy_wh), bits(m.soc_frac)});
   }
   for (const CycleRecord& cycle : evidence.log) add(cycle, signature);
   return signature.value();
