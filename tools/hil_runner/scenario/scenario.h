@@ -224,8 +224,9 @@ struct Scenario {
   [[nodiscard]] std::int64_t end_utc_ns() const { return utc_ns_at(minutes); }
 };
 
-/// Name in edge/device/maps, or path relative to `folder`.
-std::string map_path(const std::string& name, const std::filesystem::path& folder);
+/// Name in edge/device/maps, for a meter in edge/device/meters; or path relative to `folder`.
+std::string map_path(const std::string& name, const std::filesystem::path& folder,
+                     bool is_of_meter = false);
 inline constexpr const char* kMapsOfTheBuild =
     " (names are looked up in the tree that bess-hil was built from; after moving it, rebuild)";
 

@@ -77,9 +77,7 @@ void read_meter(TomlTable table, const fs::path& folder, ScenarioMeter& meter) {
     if (!meter.variant.empty()) table.fail("variant", "requires a meter with its own map");
     return;
   }
-  const bool is_name = map.find('/') == std::string::npos && !map.ends_with(".toml");
-  meter.map = is_name ? std::string(BESS_METER_DIR) + "/" + map + ".toml"
-                      : fs::absolute(folder / map).lexically_normal().string();
+  meter.map = map_path(map, folder, true);
   if (!fs::exists(meter.map))
     table.fail("map", "names no register map: " + meter.map + kMapsOfTheBuild);
 }
