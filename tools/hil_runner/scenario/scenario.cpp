@@ -250,9 +250,9 @@ void read_same_without(TomlTable table, Scenario& scenario) {
 
 }  // namespace
 
-std::string map_path(const std::string& name, const fs::path& folder, bool is_of_meter) {
+std::string map_path(const std::string& name, const fs::path& folder, bool is_meter) {
   if (name.find('/') == std::string::npos && !name.ends_with(".toml")) {
-    return std::string(is_of_meter ? BESS_METER_DIR : BESS_MAP_DIR) + "/" + name + ".toml";
+    return std::string(is_meter ? BESS_METER_DIR : BESS_MAP_DIR) + "/" + name + ".toml";
   }
   return fs::absolute(folder / name).lexically_normal().string();
 }

@@ -226,7 +226,7 @@ struct Scenario {
 
 /// Name in edge/device/maps, for a meter in edge/device/meters; or path relative to `folder`.
 std::string map_path(const std::string& name, const std::filesystem::path& folder,
-                     bool is_of_meter = false);
+                     bool is_meter = false);
 inline constexpr const char* kMapsOfTheBuild =
     " (names are looked up in the tree that bess-hil was built from; after moving it, rebuild)";
 
