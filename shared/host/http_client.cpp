@@ -151,6 +151,7 @@ constexpr double kConnectTimeout_s = 20;
 constexpr std::size_t kReasonMax = 200;  // of a server message
 constexpr std::size_t kHeaderBytesMax = 100'000;
 constexpr int kAddressesMax = 4;  // tried per host
+constexpr int kRedirectsMax = 5;
 
 template <auto kFree>
 struct Deleter {
@@ -507,9 +508,9 @@ struct Transfer {
         outcome.reason += "; it redirects to no https:// address: set the url to the final address";
       }
       if (target.empty()) return outcome;
-      if (i == request.redirects_max) {
-        outcome.reason = formatted("more than %d redirects: set the url to the final address",
-                                   request.redirects_max);
+      if (i == kRedirectsMax) {
+        outcome.reason =
+            formatted("more than %d redirects: set the url to the final address", kRedirectsMax);
         return outcome;
       }
       url = target;

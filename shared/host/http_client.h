@@ -39,6 +39,7 @@ struct HttpLimits {
   std::size_t bytes_max = std::size_t{512} << 20;  ///< of the body, unpacked
 };
 
+/// Redirects are followed, but never from https to http.
 struct HttpRequest {
   std::string url;
   HttpLimits limits{};
@@ -49,7 +50,6 @@ struct HttpRequest {
   /// In messages: how to set another file of authorities.
   std::string authorities = "SSL_CERT_FILE can name a file of other authorities";
   std::optional<std::string> post{};  ///< a body to post; its redirects are not followed
-  int redirects_max = 5;              ///< never from https to http
 };
 
 /// Called at least once per second.
