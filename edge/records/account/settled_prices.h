@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "shared/host/exchange.h"
-#include "shared/host/toml_reader.h"
 
 namespace bess {
 
