@@ -4,11 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 
 #include "shared/host/file.h"
+#include "shared/host/text.h"
 #include "shared/host/toml_reader.h"
 #include "shared/host/user_error.h"
 
@@ -19,17 +19,12 @@ constexpr std::string_view kNameCharacters =
     "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 -_.,:()%+";
 constexpr int kSocStepsPerOne = kSocCount - 1;
 
-bool parse_digits(std::string_view text, int& value) {
-  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
-  return read.ec == std::errc() && read.ptr == text.data() + text.size();
-}
-
 /// "17:00" as a quarter-hour; "24:00" is the end of the day. False for other texts.
 bool parse_hour(std::string_view text, int& quarter_hour) {
   int hours = 0;
   int minutes = 0;
-  if (text.size() != 5 || text[2] != ':' || !parse_digits(text.substr(0, 2), hours) ||
-      !parse_digits(text.substr(3), minutes)) {
+  if (text.size() != 5 || text[2] != ':' || !read_number(text.substr(0, 2), hours) ||
+      !read_number(text.substr(3), minutes)) {
     return false;
   }
   if (hours < 0 || minutes < 0 || minutes > 59 || minutes % kMinutesPerQuarterHour != 0) {

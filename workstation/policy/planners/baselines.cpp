@@ -2,10 +2,10 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <nlopt.hpp>
 
+#include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/data/env/evaluate.h"
 #include "workstation/policy/planners/cycle_limit.h"
@@ -283,13 +283,11 @@ std::vector<std::string> rival_names() {
 std::shared_ptr<Policy> given_rule(const std::string& name) {
   double low = 0;
   double high = 0;
-  const char* at = name.data() + kGivenRule.size();
-  const char* const end = name.data() + name.size();
-  auto read = std::from_chars(at, end, low);
-  const bool low_ok = read.ec == std::errc() && read.ptr != end && *read.ptr == ':';
-  if (low_ok) read = std::from_chars(read.ptr + 1, end, high);
-  if (!low_ok || read.ec != std::errc() || read.ptr != end || !std::isfinite(low) ||
-      !std::isfinite(high) || low > high) {
+  const std::string_view prices = std::string_view(name).substr(kGivenRule.size());
+  const std::size_t colon = prices.find(':');
+  if (colon == prices.npos || !read_number(prices.substr(0, colon), low) ||
+      !read_number(prices.substr(colon + 1), high) || !std::isfinite(low) || !std::isfinite(high) ||
+      low > high) {
     fail("--policy {}: use rbc:LOW:HIGH with two prices in EUR/MWh, LOW not above HIGH: rbc:11:179",
          name);
   }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
@@ -55,8 +54,7 @@ TidyColumns tidy_columns(std::string_view header, std::string_view name) {
 bool parse_decimal(std::string_view field, char separator, double& value) {
   std::string text(field);
   if (separator == ';') std::ranges::replace(text, ',', '.');
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && end == text.data() + text.size() && std::isfinite(value);
+  return read_number(text, value) && std::isfinite(value);
 }
 
 DayAheadRow tidy_row(std::string_view line, const TidyColumns& columns, const std::string& place) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <pugixml.hpp>
@@ -76,12 +75,10 @@ inline std::int64_t entsoe_time_of(const EntsoeElement& element) {
 
 template <typename Number>
 Number entsoe_number_of(const EntsoeElement& element) {
-  const std::string_view text = element.text();
   Number value{};
-  const auto [end, error] = std::from_chars(text.begin(), text.end(), value);
-  if (error != std::errc{} || end != text.end() || !std::isfinite(static_cast<double>(value))) {
+  if (!read_number(element.text(), value) || !std::isfinite(static_cast<double>(value))) {
     fail("{}: \"{}\" is not a number; download the file again", element.place(),
-         one_line(text, 40));
+         one_line(element.text(), 40));
   }
   return value;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
@@ -108,9 +107,7 @@ void MarketRowBuilder::set_text(MarketField field, std::string_view text) {
     const bool is_decimal_comma = has_decimal_commas_ && number.find('.') == number.npos;
     if (comma != number.npos && is_decimal_comma) number[comma] = '.';
     double value = 0;
-    const char* text_end = number.data() + number.size();
-    const auto [end, error] = std::from_chars(number.data(), text_end, value);
-    if (error != std::errc{} || end != text_end || !std::isfinite(value)) {
+    if (!read_number(number, value) || !std::isfinite(value)) {
       fail("{}: \"{}\" is not a number; correct the row or delete it", place_,
            one_line(text, kQuotedMax));
     }

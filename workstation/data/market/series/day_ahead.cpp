@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -75,12 +74,6 @@ constexpr std::string_view kHeader =
 /// Gaps are stored, so a wrong date must not allocate centuries.
 constexpr std::int64_t kQuarterHoursMax = 40LL * 366 * 96;
 
-template <typename Number>
-bool parse_number(std::string_view field, Number& value) {
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  return error == std::errc{} && end == field.data() + field.size();
-}
-
 DayAheadPrice parse_row(std::string_view line, std::string_view name, std::size_t line_number) {
   const auto bad = [&](std::string_view what) -> void {
     fail("{}:{}: {}: \"{}\"; expected e.g. 2025-06-01T10:00:00Z,41.5,60,", name, line_number, what,
@@ -95,11 +88,11 @@ DayAheadPrice parse_row(std::string_view line, std::string_view name, std::size_
   if (!parse_utc(time, row.utc_s, kAlsoBlank) || row.utc_s % kSecondsPerQuarterHour != 0) {
     bad("not the UTC start of a quarter-hour");
   }
-  if (!parse_number(price, row.eur_per_mwh) || !std::isfinite(row.eur_per_mwh)) {
+  if (!read_number(price, row.eur_per_mwh) || !std::isfinite(row.eur_per_mwh)) {
     bad("price is not a number");
   }
   const bool known =
-      parse_number(resolution, row.resolution_min) &&
+      read_number(resolution, row.resolution_min) &&
       (row.resolution_min == 15 || row.resolution_min == 30 || row.resolution_min == 60);
   if (!known) bad("resolution is not 15, 30 or 60 minutes");
   if (!published.empty() && !parse_utc(published, row.published_utc_s, kAlsoBlank)) {
