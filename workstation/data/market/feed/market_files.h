@@ -43,7 +43,7 @@ std::int64_t step_of_times(std::vector<std::int64_t> utc_s, std::string_view nam
 /// `name` is used in messages.
 MarketRows parse_market_json(std::string_view text, std::string_view name);
 
-// ENTSO-E A85: settled imbalance prices of other single-price countries (entsoe_xml.cpp).
+// ENTSO-E A85: settled imbalance prices of other single-price countries (entsoe.cpp).
 
 bool looks_like_xml(std::string_view text);
 
