@@ -15,7 +15,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <optional>
 #include <pugixml.hpp>
@@ -220,26 +219,12 @@ Period period_of(const EntsoeElement& element) {
   return period;
 }
 
-struct Prices {
-  double long_eur_per_mwh = kNotPublished;
-  double short_eur_per_mwh = kNotPublished;
+void set_price(const Point& point, PartyPrices& prices) {
+  if (point.category != kShort) prices.long_eur_per_mwh = point.eur_per_mwh;
+  if (point.category != kLong) prices.short_eur_per_mwh = point.eur_per_mwh;
+}
 
-  void set(const Point& point) {
-    if (point.category != kShort) long_eur_per_mwh = point.eur_per_mwh;
-    if (point.category != kLong) short_eur_per_mwh = point.eur_per_mwh;
-  }
-  [[nodiscard]] bool are_different() const {
-    return is_published(long_eur_per_mwh) && is_published(short_eur_per_mwh) &&
-           long_eur_per_mwh != short_eur_per_mwh;
-  }
-  /// The common price; NaN if there are two different ones, or none.
-  [[nodiscard]] double single() const {
-    if (!is_published(long_eur_per_mwh)) return short_eur_per_mwh;
-    if (!is_published(short_eur_per_mwh)) return long_eur_per_mwh;
-    return are_different() ? kNotPublished : long_eur_per_mwh;
-  }
-};
-using QuarterHourPrices = std::map<std::int64_t, Prices>;  ///< by start, UTC seconds
+using QuarterHourPrices = std::map<std::int64_t, PartyPrices>;  ///< by start, UTC seconds
 
 /// A price of a longer interval applies to each of its quarter-hours; with repeated points it
 /// applies until the next of its own category.
@@ -256,7 +241,7 @@ void add_period(const Period& period, bool repeats, QuarterHourPrices& prices) {
       if (!point) continue;
       for (std::int64_t utc_s = end_utc_s - period.time.step_s; utc_s < end_utc_s;
            utc_s += kSecondsPerQuarterHour) {
-        prices[utc_s].set(*point);
+        set_price(*point, prices[utc_s]);
       }
     }
   }
@@ -331,11 +316,6 @@ std::int64_t sequence_of(const EntsoeElement& series) {
   return position.node ? entsoe_number_of<std::int64_t>(position) : 1;
 }
 
-struct SequencedRows {
-  std::int64_t sequence = 1;
-  std::vector<DayAheadRow> rows{};
-};
-
 }  // namespace
 
 DayAheadFile parse_entsoe_day_ahead(std::string_view text, std::string_view name) {
@@ -344,30 +324,25 @@ DayAheadFile parse_entsoe_day_ahead(std::string_view text, std::string_view name
   load_entsoe_document(document, source, "Publication_MarketDocument",
                        "document of day-ahead prices (A44)");
   DayAheadFile file;
-  std::vector<SequencedRows> found;
+  std::map<std::int64_t, std::vector<DayAheadRow>> rows_of;  ///< by sequence
   for (const pugi::xml_node& root : document) {
     for (const EntsoeElement& series : EntsoeElement{root, source}.children("TimeSeries")) {
       require_entsoe_units(series);
       set_entsoe_zone(series, series.child("out_Domain.mRID").text(), file.zone);
-      SequencedRows of_series{.sequence = sequence_of(series)};
+      std::vector<DayAheadRow>& rows = rows_of[sequence_of(series)];
       const bool repeats = series.child("curveType").text() == "A03";
       for (const EntsoeElement& period : series.children("Period")) {
-        add_day_ahead_period(period, repeats, of_series.rows);
+        add_day_ahead_period(period, repeats, rows);
       }
-      found.push_back(std::move(of_series));
     }
   }
-  std::int64_t first = std::numeric_limits<std::int64_t>::max();
-  for (const SequencedRows& s : found) first = std::min(first, s.sequence);
+  if (rows_of.empty() || rows_of.begin()->second.empty()) {
+    fail("{}: has no day-ahead prices; choose other days", name);
+  }
+  const std::int64_t first = rows_of.begin()->first;
+  file.rows = std::move(rows_of.begin()->second);
   std::size_t unused = 0;
-  for (SequencedRows& s : found) {
-    if (s.sequence != first) {
-      unused += s.rows.size();
-      continue;
-    }
-    file.rows.insert(file.rows.end(), s.rows.begin(), s.rows.end());
-  }
-  if (file.rows.empty()) fail("{}: has no day-ahead prices; choose other days", name);
+  for (const auto& [sequence, rows] : rows_of) unused += sequence == first ? 0 : rows.size();
   if (unused > 0) {
     file.unused = fmt::format("{} of another auction of the zone (sequence above {}) not used",
                               counted(unused, "price"), first);

@@ -122,19 +122,8 @@ void MarketRowBuilder::set_number(MarketField field, double value) {
   if (field == kMarginalIncremental) values_.marginal_incremental_eur_per_mwh = value;
   if (field == kMarginalDecremental) values_.marginal_decremental_eur_per_mwh = value;
   if (field == kPrice) values_.price_eur_per_mwh = value;
-  if (field == kPositivePrice) positive_eur_per_mwh_ = value;
-  if (field == kNegativePrice) negative_eur_per_mwh_ = value;
-}
-
-bool MarketRowBuilder::is_dual_priced() const {
-  return !is_published(values_.price_eur_per_mwh) && is_published(positive_eur_per_mwh_) &&
-         is_published(negative_eur_per_mwh_) && positive_eur_per_mwh_ != negative_eur_per_mwh_;
-}
-
-double MarketRowBuilder::single_price() const {
-  if (is_published(values_.price_eur_per_mwh)) return values_.price_eur_per_mwh;
-  if (is_dual_priced()) return kNotPublished;
-  return is_published(positive_eur_per_mwh_) ? positive_eur_per_mwh_ : negative_eur_per_mwh_;
+  if (field == kPositivePrice) parties_.long_eur_per_mwh = value;
+  if (field == kNegativePrice) parties_.short_eur_per_mwh = value;
 }
 
 bool MarketRowBuilder::is_minute() const {
@@ -152,14 +141,16 @@ void MarketRowBuilder::finish(MarketRows& rows) const {
     fail("{}: {} does not start a {}; correct the time", place_, utc_text(*utc_s_).view(),
          minute ? "minute" : "quarter-hour");
   }
+  const bool has_price = is_published(values_.price_eur_per_mwh);
+  const double price = has_price ? values_.price_eur_per_mwh : parties_.single();
   if (minute) {
-    rows.minutes.push_back({*utc_s_, single_price()});
+    rows.minutes.push_back({*utc_s_, price});
   } else {
     rows.quarter_hours.push_back(values_);
     rows.quarter_hours.back().utc_s = *utc_s_;
-    rows.quarter_hours.back().price_eur_per_mwh = single_price();
+    rows.quarter_hours.back().price_eur_per_mwh = price;
   }
-  if (is_dual_priced()) {
+  if (!has_price && parties_.are_different()) {
     (minute ? rows.dual_priced_minutes : rows.dual_priced_quarter_hours).insert(*utc_s_);
   }
   // All Elia datasets have the resolution code, tidy files never.

@@ -27,6 +27,21 @@ struct MinuteRow {
   double indicative_eur_per_mwh;  ///< NaN = the TSO published the row without a price
 };
 
+/// Prices of the two parties to an imbalance.
+struct PartyPrices {
+  double long_eur_per_mwh = kNotPublished, short_eur_per_mwh = kNotPublished;
+
+  [[nodiscard]] bool are_different() const {
+    return is_published(long_eur_per_mwh) && is_published(short_eur_per_mwh) &&
+           long_eur_per_mwh != short_eur_per_mwh;
+  }
+  /// The common price; NaN if there are two different ones, or none.
+  [[nodiscard]] double single() const {
+    if (are_different()) return kNotPublished;
+    return is_published(long_eur_per_mwh) ? long_eur_per_mwh : short_eur_per_mwh;
+  }
+};
+
 enum class MarketSource {
   kElia,
   kEntsoe,
@@ -92,12 +107,10 @@ class MarketRowBuilder {
 
  private:
   [[nodiscard]] bool is_minute() const;
-  [[nodiscard]] bool is_dual_priced() const;
-  [[nodiscard]] double single_price() const;
 
   std::string_view place_;
   QuarterHour values_;
-  double positive_eur_per_mwh_ = kNotPublished, negative_eur_per_mwh_ = kNotPublished;
+  PartyPrices parties_;
   std::optional<std::int64_t> utc_s_;
   std::string_view resolution_;
   bool has_quarter_hour_ = false;
