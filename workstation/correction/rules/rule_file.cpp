@@ -218,6 +218,12 @@ std::string box_lines(const RuleBox& box) {
   return text;
 }
 
+std::string threshold_line(const Rule& rule) {
+  return rule.lowest() == Action::kCharge
+             ? fmt::format("charge_at_or_below = {}\n", rule.box.price_max_eur_per_mwh)
+             : fmt::format("discharge_at_or_above = {}\n", rule.box.price_min_eur_per_mwh);
+}
+
 void append_rules(std::string_view text, const std::string& name, RuleSet& set) {
   TomlValue document;
   std::string error;
@@ -261,8 +267,7 @@ std::string format_rules(const RuleSet& rules) {
   std::string text;
   for (const Rule& rule : rules.rules) {
     text += fmt::format("{}[[rule]]\nname = \"{}\"\n", text.empty() ? "" : "\n", rule.name);
-    if (!rule.is_threshold) text += box_lines(rule.box);
-    text += rule.demand->line(rule.box);
+    text += rule.is_threshold ? threshold_line(rule) : box_lines(rule.box) + rule.demand->line();
     if (rule.enforce) text += "enforce = true\n";
   }
   return text;
