@@ -173,10 +173,9 @@ void RuleSamples::corners(const LatticeState& context, std::vector<ConstraintSta
 ActionSet RuleSamples::actions_at(const float* x, const PriceMap& price_map) const {
   const int price = std::clamp(static_cast<int>(std::lround(price_map.price_of(x[4]))),
                                kLatticePriceMinEurPerMwh, kLatticePriceMaxEurPerMwh);
-  return implied_
-      .at(lattice_value(x[1], kQuarterHourScale), lattice_value(x[2], kContextClassScale) + 1,
-          std::clamp(lattice_value(x[3], kSocScale), 0, kSocCount - 1), price)
-      .set();
+  return implied_.at(lattice_value(x[1], kQuarterHourScale),
+                     lattice_value(x[2], kContextClassScale) + 1,
+                     std::clamp(lattice_value(x[3], kSocScale), 0, kSocCount - 1), price);
 }
 
 namespace {

@@ -106,19 +106,16 @@ void check_each(const RuleSet& rules, ContextKind kind) {
 
 }  // namespace
 
-ActionSet ActionRange::set() const {
-  ActionSet actions = 0;
-  for (int a = static_cast<int>(lowest); a <= static_cast<int>(highest); ++a) {
-    const auto action = static_cast<Action>(a);
-    if (has_gap && action == Action::kIdle) continue;
-    actions = static_cast<ActionSet>(actions | action_bit(action));
-  }
-  return actions;
-}
-
 void ImpliedRanges::add_bound(const Rule& rule, std::size_t index, Side side, Action action,
                               const std::vector<Direction>& directions, ContextKind kind) {
-  ImpliedBound bound{side, action, index, lattice_box_of(rule.box, kind), {}};
+  ImpliedBound bound{side, action, 0, index, lattice_box_of(rule.box, kind), {}};
+  for (int a = 0; a < kActionCount; ++a) {
+    const auto other = static_cast<Action>(a);
+    const bool is_allowed = side == Side::kAtLeast  ? other >= action
+                            : side == Side::kAtMost ? other <= action
+                                                    : other != action;
+    if (is_allowed) bound.allowed = static_cast<ActionSet>(bound.allowed | action_bit(other));
+  }
   for (int q = 0; q < kQuarterHourCount; ++q) {
     bound.quarter_hours.push_back(rule.box.holds_at_hour(q));
   }
@@ -161,29 +158,18 @@ ImpliedRanges::ImpliedRanges(const RuleSet& rules, ContextKind kind) {
   }
 }
 
-ActionRange ImpliedRanges::at(int quarter_hour, int context_class, int soc_index,
-                              int price_eur_per_mwh) const {
+ActionSet ImpliedRanges::at(int quarter_hour, int context_class, int soc_index,
+                            int price_eur_per_mwh) const {
   const int price = price_eur_per_mwh - kLatticePriceMinEurPerMwh;
-  ActionRange range;
+  ActionSet actions = kAllActions;
   for (const ImpliedBound& bound : bounds_) {
     const LatticeBox& box = bound.box;
-    if (!box.contains(soc_index, price) || (box.classes >> (context_class - 1) & 1) == 0 ||
-        !bound.quarter_hours[static_cast<std::size_t>(quarter_hour)]) {
-      continue;
-    }
-    switch (bound.side) {
-      case Side::kAtLeast:
-        range.lowest = std::max(range.lowest, bound.action);
-        break;
-      case Side::kAtMost:
-        range.highest = std::min(range.highest, bound.action);
-        break;
-      case Side::kNotIdle:
-        range.has_gap = true;
-        break;
+    if (box.contains(soc_index, price) && (box.classes >> (context_class - 1) & 1) != 0 &&
+        bound.quarter_hours[static_cast<std::size_t>(quarter_hour)]) {
+      actions = static_cast<ActionSet>(actions & bound.allowed);
     }
   }
-  return range;
+  return actions;
 }
 
 void require_consistent(const RuleSet& rules, const PriceThresholds& thresholds, ContextKind kind) {

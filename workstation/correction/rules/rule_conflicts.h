@@ -28,22 +28,13 @@ struct Opposite {
 std::optional<Opposite> nearest_opposite(const RuleSet& rules, const PriceThresholds& thresholds,
                                          ContextKind kind, const Rule& rule);
 
-/// Actions allowed at a lattice state by all rules that bind a student, directions included:
-/// `lowest` to `highest`, without idling if `has_gap`.
-struct ActionRange {
-  Action lowest = Action::kDischarge;
-  Action highest = Action::kCharge;
-  bool has_gap = false;
-
-  [[nodiscard]] ActionSet set() const;
-};
-
-/// Ranges at single states, for training and evaluation. Keeps no reference to `rules`.
+/// Actions allowed at a lattice state by all rules that bind a student, directions included, for
+/// training and evaluation. Keeps no reference to `rules`.
 class ImpliedRanges {
  public:
   ImpliedRanges(const RuleSet& rules, ContextKind kind);
-  [[nodiscard]] ActionRange at(int quarter_hour, int context_class, int soc_index,
-                               int price_eur_per_mwh) const;
+  [[nodiscard]] ActionSet at(int quarter_hour, int context_class, int soc_index,
+                             int price_eur_per_mwh) const;
 
  private:
   friend void require_consistent(const RuleSet&, const PriceThresholds&, ContextKind);
@@ -55,6 +46,7 @@ class ImpliedRanges {
   struct ImpliedBound {
     Side side;
     Action action;
+    ActionSet allowed;
     std::size_t rule;  ///< index
     LatticeBox box;
     std::vector<bool> quarter_hours;

@@ -87,10 +87,10 @@ Action RuledPolicy::decide(const MarketStep& step, std::size_t index, double soc
   const Action wanted = policy_->decide(step, index, soc_frac);
   const int price =
       std::clamp(point.price_eur_per_mwh, kLatticePriceMinEurPerMwh, kLatticePriceMaxEurPerMwh);
-  const ActionRange range =
+  const ActionSet allowed =
       implied_.at(point.quarter_hour, point.context_class, point.soc_index, price);
   const Action action = nearest_allowed(rule_limits_at(guard_rules_, point).actions,
-                                        nearest_allowed(range.set(), wanted));
+                                        nearest_allowed(allowed, wanted));
   ++decisions_;
   changed_ += action != wanted ? 1 : 0;
   return action;

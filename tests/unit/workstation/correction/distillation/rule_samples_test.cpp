@@ -121,7 +121,7 @@ TEST(RuleSamples, ActionsAtAnInputAreThoseOfItsLatticeState) {
                 0, x);
     x[3] = scaled_input(s.soc_index, kSocScale);
     const ActionSet expected =
-        implied.at(s.quarter_hour, s.context_class, s.soc_index, s.price_eur_per_mwh).set();
+        implied.at(s.quarter_hour, s.context_class, s.soc_index, s.price_eur_per_mwh);
     ASSERT_EQ(samples.actions_at(x, map), expected);
     bound += expected == kAllActions ? 0 : 1;
   }

@@ -259,15 +259,15 @@ TEST(ImpliedRanges, AreWhatComparableStatesSay) {
     const auto price = -500 + static_cast<int>(random.index(2001));
     const auto soc = static_cast<int>(random.index(kSocCount));
     const auto hour = static_cast<int>(random.index(kQuarterHourCount));
-    ActionRange expected;
-    if (price <= 90 && soc <= 80) expected.lowest = Action::kIdle;
-    if (price <= -200 && soc <= 100) expected.lowest = Action::kCharge;
-    if (price >= 60 && soc >= 140 && hour >= 12 && hour < 20) expected.highest = Action::kIdle;
-    expected.has_gap = price >= -50 && price <= 30;
-    const ActionRange found = implied.at(hour, 1 + n % 12, soc, price);
-    ASSERT_EQ(found.lowest, expected.lowest) << price << ' ' << soc << ' ' << hour;
-    ASSERT_EQ(found.highest, expected.highest) << price << ' ' << soc << ' ' << hour;
-    ASSERT_EQ(found.has_gap, expected.has_gap) << price;
+    const bool must_charge = price <= -200 && soc <= 100;
+    const bool never_charges = price >= 60 && soc >= 140 && hour >= 12 && hour < 20;
+    const ActionSet allowed = implied.at(hour, 1 + n % 12, soc, price);
+    ASSERT_EQ(allows(allowed, Action::kDischarge), !must_charge && !(price <= 90 && soc <= 80))
+        << price << ' ' << soc << ' ' << hour;
+    ASSERT_EQ(allows(allowed, Action::kIdle), !must_charge && !(price >= -50 && price <= 30))
+        << price << ' ' << soc << ' ' << hour;
+    ASSERT_EQ(allows(allowed, Action::kCharge), !never_charges)
+        << price << ' ' << soc << ' ' << hour;
   }
 }
 
