@@ -40,15 +40,15 @@ class RandomReplay {
   }
   const MiniBatch& draw() {
     drawn_.resize(kMinibatch);
-    for (auto& slot : drawn_) slot = static_cast<std::uint32_t>(random_.index(kReplay));
-    fill_minibatch(ring_, drawn_, batch_);
+    for (Transition& drawn : drawn_) drawn = ring_[random_.index(kReplay)];
+    fill_minibatch(drawn_, batch_);
     return batch_;
   }
 
  private:
   Random random_{1};
   std::vector<Transition> ring_;
-  std::vector<std::uint32_t> drawn_;
+  std::vector<Transition> drawn_;
   MiniBatch batch_;
 };
 

@@ -85,8 +85,9 @@ void Replay::play(const Teacher& teacher, std::size_t days, double epsilon, Rand
 
 void Replay::draw(std::size_t count, Random& random, MiniBatch& batch) {
   drawn_.resize(count);
-  for (std::uint32_t& slot : drawn_) slot = static_cast<std::uint32_t>(random.index(ring_.size()));
-  fill_minibatch(ring_, drawn_, batch);
+  // From a ring of a million each is a cache miss, and many are fetched in parallel.
+  for (Transition& drawn : drawn_) drawn = ring_[random.index(ring_.size())];
+  fill_minibatch(drawn_, batch);
 }
 
 void Replay::save(BinaryWriter& out) const {

@@ -75,7 +75,7 @@ class Replay {
   std::size_t capacity_;
   std::size_t next_ = 0;  ///< slot that the next transition overwrites once the ring is full
   std::vector<Transition> ring_;
-  std::vector<std::uint32_t> drawn_;  ///< slots of the last minibatch
+  std::vector<Transition> drawn_;  ///< of the last minibatch
 };
 
 enum class Source { kCounterfactual, kReplay };

@@ -53,8 +53,5 @@ struct MiniBatch {
 
 /// Groups the given transitions by action, stable within each group.
 void fill_minibatch(std::span<const Transition> transitions, MiniBatch& batch);
-/// The same for the given slots of a ring; slots may repeat.
-void fill_minibatch(std::span<const Transition> ring, std::span<const std::uint32_t> slots,
-                    MiniBatch& batch);
 
 }  // namespace bess
