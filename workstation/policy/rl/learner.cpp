@@ -8,19 +8,6 @@ namespace {
 /// Maximum samples per tile: the activations stay in the second-level cache.
 constexpr Eigen::Index kTileSamples = 256;
 
-/// Calls body(tile) for tiles of about equal size that cover the samples of one action within
-/// [begin, end).
-template <typename Body>
-void for_tiles(int action, Eigen::Index begin, Eigen::Index end, const Body& body) {
-  if (begin >= end) return;
-  const Eigen::Index tiles = (end - begin + kTileSamples - 1) / kTileSamples;
-  for (Eigen::Index t = 0; t < tiles; ++t) {
-    const Eigen::Index first = begin + (end - begin) * t / tiles;
-    const Eigen::Index next = begin + (end - begin) * (t + 1) / tiles;
-    body(TileRange{action, first, next - first});
-  }
-}
-
 }  // namespace
 
 Learner::Learner(Method method, const Support& support, double gamma, std::uint64_t seed,
@@ -51,15 +38,19 @@ void Learner::run_tiles(const MiniBatch& batch, int worker_index) {
   worker.loss = 0;
   worker.c51.edge_mass = 0;
   const GradientStep step{packed_online_, packed_target_, batch, gamma_, mean_weight_};
-  const Eigen::Index begin = batch.size() * worker_index / team_.size();
-  const Eigen::Index end = batch.size() * (worker_index + 1) / team_.size();
+  const Eigen::Index own_begin = batch.size() * worker_index / team_.size();
+  const Eigen::Index own_end = batch.size() * (worker_index + 1) / team_.size();
   for (int action = 0; action < kActionCount; ++action) {
-    for_tiles(action, std::max(begin, batch.group_begin(action)),
-              std::min(end, batch.group_end[action]), [&](const TileRange& range) {
-                worker.loss += method_ == Method::kC51
-                                   ? c51_tile_gradient(step, range, worker.c51, worker.gradient)
-                                   : dqn_tile_gradient(step, range, worker.dqn, worker.gradient);
-              });
+    const Eigen::Index begin = std::max(own_begin, batch.group_begin(action));
+    const Eigen::Index count = std::min(own_end, batch.group_end[action]) - begin;
+    const Eigen::Index tiles = (std::max<Eigen::Index>(count, 0) + kTileSamples - 1) / kTileSamples;
+    for (Eigen::Index t = 0; t < tiles; ++t) {  // of about equal size
+      const Eigen::Index first = begin + count * t / tiles;
+      const TileRange range{action, first, begin + count * (t + 1) / tiles - first};
+      worker.loss += method_ == Method::kC51
+                         ? c51_tile_gradient(step, range, worker.c51, worker.gradient)
+                         : dqn_tile_gradient(step, range, worker.dqn, worker.gradient);
+    }
   }
 }
 
