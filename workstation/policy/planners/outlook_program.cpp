@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <mutex>
 #include <unordered_map>
 
 #include "shared/battery_model.h"
@@ -396,7 +397,6 @@ Action OutlookPolicy::decide(const MarketStep& step, std::size_t, double soc_fra
 
 std::array<double, kActionCount> OutlookPolicy::action_values(const MarketStep& step,
                                                               double soc_frac) const {
-  const std::lock_guard lock(mutex_);
   return program_->kept_action_values(step, soc_frac, plan_);
 }
 

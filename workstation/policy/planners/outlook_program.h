@@ -21,7 +21,6 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -73,7 +72,8 @@ class OutlookProgram {
   /// the step.
   double continuation(const MarketStep& step, Plan& plan, float* value_eur) const;
   /// action_values() with a cache of some hundred days: validations and compared policies trade the
-  /// same ones. A step that is not cached uses `plan`, which need not be valid for it. Thread-safe.
+  /// same ones. A step that is not cached uses `plan`, which need not be valid for it. Thread-safe,
+  /// also for a shared `plan`.
   [[nodiscard]] std::array<double, kActionCount> kept_action_values(const MarketStep& step,
                                                                     double soc_frac,
                                                                     Plan& plan) const;
@@ -150,8 +150,8 @@ class OutlookPolicy final : public Policy {
 
  private:
   std::shared_ptr<const OutlookProgram> program_;
-  mutable std::mutex mutex_;           ///< protects plan_
-  mutable OutlookProgram::Plan plan_;  ///< latest plan; a function of the step only
+  /// Latest plan, a function of the step only; protected by the program's cache.
+  mutable OutlookProgram::Plan plan_;
 };
 
 }  // namespace bess
