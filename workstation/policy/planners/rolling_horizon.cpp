@@ -95,72 +95,56 @@ void RollingHorizonPolicy::fit_shrinkage(const MarketSteps& market,
   std::array<double, kMinutesPerQuarterHour> square{};
   ordinary_age_quarter_hours_.fill(kQuarterHourCount);
   for_each_step(market, days, [&](const MarketStep& step) {
-    const Observation seen = observe(step);
+    const double seen = observed_deviation(step);
     const double is = step.paid_eur_per_mwh - usual_eur_per_mwh_[step.quarter_hour];
-    product[step.minute_of_quarter_hour] += seen.deviation_eur_per_mwh * is;
-    square[step.minute_of_quarter_hour] += seen.deviation_eur_per_mwh * seen.deviation_eur_per_mwh;
-    ordinary_age_quarter_hours_[step.minute_of_quarter_hour] =
-        std::min(ordinary_age_quarter_hours_[step.minute_of_quarter_hour], seen.quarter_hours_ago);
+    product[step.minute_of_quarter_hour] += seen * is;
+    square[step.minute_of_quarter_hour] += seen * seen;
+    ordinary_age_quarter_hours_[step.minute_of_quarter_hour] = std::min(
+        ordinary_age_quarter_hours_[step.minute_of_quarter_hour], step.quarter_hours_ago());
   });
   for (int t = 0; t < kMinutesPerQuarterHour; ++t) {
     shrinkage_[t] = std::clamp(ratio_or_zero(product[t], square[t]), 0.0, 1.0);
   }
 }
 
-RollingHorizonPolicy::Observation RollingHorizonPolicy::observe(const MarketStep& step) const {
-  return {step.observed_eur_per_mwh - usual_eur_per_mwh_[step.row_quarter_hour()],
-          step.quarter_hours_ago()};
+double RollingHorizonPolicy::observed_deviation(const MarketStep& step) const {
+  return step.observed_eur_per_mwh - usual_eur_per_mwh_[step.row_quarter_hour()];
 }
 
 double RollingHorizonPolicy::deviation_now(const MarketStep& step) const {
-  const Observation seen = observe(step);
   const int quarter_hours_late = std::max(
-      0, seen.quarter_hours_ago - ordinary_age_quarter_hours_[step.minute_of_quarter_hour]);
+      0, step.quarter_hours_ago() - ordinary_age_quarter_hours_[step.minute_of_quarter_hour]);
   return shrinkage_[step.minute_of_quarter_hour] * std::pow(persistence_, quarter_hours_late) *
-         seen.deviation_eur_per_mwh;
-}
-
-void RollingHorizonPolicy::value_from(const std::vector<float>& table, int quarter_hour,
-                                      double deviation, float* value) const {
-  const double position = deviation_position(deviation);
-  const int lower = std::min(static_cast<int>(position), kDeviations - 2);
-  const auto weight = static_cast<float>(position - lower);
-  const float* a = &table[row_of(quarter_hour, lower)];
-  const float* b = a + kSocPoints;
-  for (int i = 0; i < kSocPoints; ++i) value[i] = a[i] * (1 - weight) + b[i] * weight;
+         observed_deviation(step);
 }
 
 void RollingHorizonPolicy::tabulate_values() {
   value_.assign(row_of(kQuarterHourCount, 0), 0.0F);
-  std::vector<float> shorter;
-  std::array<float, kSocPoints> next{};
-  std::array<float, kSocPoints> now{};
   for (int horizon = 1; horizon <= kHorizonQuarterHours; ++horizon) {
-    shorter = value_;
+    const std::vector<float> shorter = value_;
     for (int q = 0; q < kQuarterHourCount; ++q) {
       for (int d = 0; d < kDeviations; ++d) {
-        const double deviation = deviation_at(d);
-        const auto price = static_cast<float>(usual_eur_per_mwh_[q] + deviation);
-        value_from(shorter, (q + 1) % kQuarterHourCount, persistence_ * deviation, next.data());
-        for (int s = 0; s < steps_of(q); ++s) {
-          sweep_.run(next.data(), q, price, now.data());
-          std::swap(next, now);
-        }
-        std::copy(next.begin(), next.end(), value_.begin() + row_of(q, d));
+        std::ranges::copy(plan(shorter, q, deviation_at(d), steps_of(q)),
+                          value_.begin() + row_of(q, d));
       }
     }
   }
 }
 
-RollingHorizonPolicy::Values RollingHorizonPolicy::plan_rest(const MarketStep& step,
-                                                             double deviation, int steps) const {
-  const auto price = static_cast<float>(usual_eur_per_mwh_[step.quarter_hour] + deviation);
+RollingHorizonPolicy::Values RollingHorizonPolicy::plan(const std::vector<float>& later,
+                                                        int quarter_hour, double deviation,
+                                                        int steps) const {
+  const double position = deviation_position(persistence_ * deviation);
+  const int lower = std::min(static_cast<int>(position), kDeviations - 2);
+  const auto weight = static_cast<float>(position - lower);
+  const float* a = &later[row_of((quarter_hour + 1) % kQuarterHourCount, lower)];
+  const float* b = a + kSocPoints;
   Values next;
   Values now;
-  value_from(value_, (step.quarter_hour + 1) % kQuarterHourCount, persistence_ * deviation,
-             next.data());
+  for (int i = 0; i < kSocPoints; ++i) next[i] = a[i] * (1 - weight) + b[i] * weight;
+  const auto price = static_cast<float>(usual_eur_per_mwh_[quarter_hour] + deviation);
   for (int s = 0; s < steps; ++s) {
-    sweep_.run(next.data(), step.quarter_hour, price, now.data());
+    sweep_.run(next.data(), quarter_hour, price, now.data());
     std::swap(next, now);
   }
   return next;
@@ -168,7 +152,7 @@ RollingHorizonPolicy::Values RollingHorizonPolicy::plan_rest(const MarketStep& s
 
 Action RollingHorizonPolicy::decide(const MarketStep& step, std::size_t, double soc_frac) const {
   const double deviation = deviation_now(step);
-  const Values next = plan_rest(step, deviation, steps_left(step) - 1);
+  const Values next = plan(value_, step.quarter_hour, deviation, steps_left(step) - 1);
   const double price = usual_eur_per_mwh_[step.quarter_hour] + deviation;
   return best_action(battery_, grid_, next.data(), step.quarter_hour, price, soc_frac);
 }

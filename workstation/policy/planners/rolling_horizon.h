@@ -34,22 +34,16 @@ class RollingHorizonPolicy final : public Policy {
   using Values = std::array<float, kSocPoints>;
 
  private:
-  /// Deviation of the newest price and its age in quarter-hours.
-  struct Observation {
-    double deviation_eur_per_mwh;
-    int quarter_hours_ago;
-  };
-  [[nodiscard]] Observation observe(const MarketStep& step) const;
+  /// Of the newest price.
+  [[nodiscard]] double observed_deviation(const MarketStep& step) const;
   [[nodiscard]] double deviation_now(const MarketStep& step) const;
   void fit_usual_prices(const MarketSteps& market, const std::vector<MarketDay>& days);
   void fit_persistence(const MarketSteps& market, const std::vector<MarketDay>& days);
   void fit_shrinkage(const MarketSteps& market, const std::vector<MarketDay>& days);
   void tabulate_values();
-  /// Value by SoC with `steps` more steps of this quarter-hour.
-  [[nodiscard]] Values plan_rest(const MarketStep& step, double deviation, int steps) const;
-  /// Value by SoC of the horizon that starts with `quarter_hour` at `deviation`.
-  void value_from(const std::vector<float>& table, int quarter_hour, double deviation,
-                  float* value) const;
+  /// Value by SoC with `steps` more steps of this quarter-hour, then `later` (laid out as value_).
+  [[nodiscard]] Values plan(const std::vector<float>& later, int quarter_hour, double deviation,
+                            int steps) const;
 
   BatteryParameters battery_;
   SocGrid grid_;
