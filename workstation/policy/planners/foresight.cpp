@@ -173,7 +173,7 @@ void ForesightPolicy::find_shadow_prices(std::span<const MarketStep> ahead, doub
       double energy_mwh = 0;
       for (; step < ends[day]; ++step) {
         const double wanted_w =
-            power_sign(best(step, soc)) * battery_.power_w_at(quarter_hour_[step]);
+            power_sign(decide(ahead[step], step, soc)) * battery_.power_w_at(quarter_hour_[step]);
         const BatteryStep moved = battery_step(battery_, soc, wanted_w, kHoursPerStep);
         energy_mwh += std::fabs(moved.power_w) / kWattsPerMegawatt * kHoursPerStep;
         soc = moved.soc_frac;
@@ -206,7 +206,7 @@ const float* ForesightPolicy::values_after(std::size_t index) const {
   return &value_[(index % kBlockSteps + 1) * kSocPoints];
 }
 
-Action ForesightPolicy::best(std::size_t index, double soc_frac) const {
+Action ForesightPolicy::decide(const MarketStep&, std::size_t index, double soc_frac) const {
   return best_action(shadowed(index), grid_, values_after(index), quarter_hour_[index],
                      static_cast<double>(paid_[index]), soc_frac);
 }
@@ -218,10 +218,6 @@ double ForesightPolicy::worth_eur(std::size_t index, double soc_frac, double wan
   const double energy_mwh = moved.power_w / kWattsPerMegawatt * kHoursPerStep;
   return static_cast<double>(interpolate(values_after(index), grid_.position(moved.soc_frac))) -
          exchange_cost_eur(shadowed(index), energy_mwh, static_cast<double>(paid_[index]));
-}
-
-Action ForesightPolicy::decide(const MarketStep&, std::size_t index, double soc_frac) const {
-  return best(index, soc_frac);
 }
 
 }  // namespace bess

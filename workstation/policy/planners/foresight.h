@@ -110,7 +110,6 @@ class ForesightPolicy final : public Policy {
   void plan();
   void solve_block(std::size_t block) const;
   void find_shadow_prices(std::span<const MarketStep> ahead, double soc_frac);
-  [[nodiscard]] Action best(std::size_t index, double soc_frac) const;
 
   BatteryParameters battery_;
   SocGrid grid_;
