@@ -94,12 +94,12 @@ void print_json(const OmegaPoint& point, const Evaluation& teacher) {
   json.set(key::kCarrySoc, true);
   json.set("days", point.evaluation.days.size());
   json.set(key::kProfit, Decimals{point.evaluation.profit_eur_per_day_per_mwh(), 4});
-  json.set(key::kProfitError, Decimals{point.evaluation.standard_error(), 4});
+  json.set(key::kProfitError, Decimals{point.evaluation.errors().plain, 4});
   json.set(key::kProfitErrorByMonth, Decimals{point.evaluation.errors().by_month, 4});
   json.set(key::kGainOver, "teacher");
   json.set(key::kGain, Decimals{gain.mean, 4});
-  json.set(key::kGainError, Decimals{gain.standard_error, 4});
-  json.set(key::kGainErrorByMonth, Decimals{gain.standard_error_by_month, 4});
+  json.set(key::kGainError, Decimals{gain.errors.plain, 4});
+  json.set(key::kGainErrorByMonth, Decimals{gain.errors.by_month, 4});
   fmt::print("{}\n", json.line());
   std::fflush(stdout);  // each takes minutes
 }

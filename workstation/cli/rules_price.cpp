@@ -38,7 +38,7 @@ struct ResetAndCarried {
 /// Effect of rules in one accounting; NaN for a rule that cannot be projected.
 struct RuleGain {
   double profit = NAN, profit_without = NAN;
-  PairedDifference gain{NAN, NAN};
+  PairedDifference gain{NAN};
 
   RuleGain() = default;
   RuleGain(const Evaluation& with, const Evaluation& without)
@@ -51,8 +51,8 @@ struct RuleGain {
     json.set(key::kProfit, Decimals{profit, 4});
     json.set("profit_without_rules_eur_per_day_per_mwh", Decimals{profit_without, 4});
     json.set(key::kGain, Decimals{gain.mean, 4});
-    json.set(key::kGainError, Decimals{gain.standard_error, 4});
-    json.set(key::kGainErrorByMonth, Decimals{gain.standard_error_by_month, 4});
+    json.set(key::kGainError, Decimals{gain.errors.plain, 4});
+    json.set(key::kGainErrorByMonth, Decimals{gain.errors.by_month, 4});
   }
 };
 
@@ -86,10 +86,10 @@ class Pricing {
     const RuleGain reset(ruled.reset, base.reset), carried(ruled.carried, base.carried);
     if (options_.json) return print_json(rule, reset, carried, changed_share);
     fmt::print("{:<40}  {:>+7.2f} {:>6} {:>8}  {:>+7.2f} {:>6} {:>8}  {:>12.2f}\n", rule,
-               reset.gain.mean, error_text(reset.gain.standard_error, 2),
-               error_text(reset.gain.standard_error_by_month, 2), carried.gain.mean,
-               error_text(carried.gain.standard_error, 2),
-               error_text(carried.gain.standard_error_by_month, 2), 100 * changed_share);
+               reset.gain.mean, error_text(reset.gain.errors.plain, 2),
+               error_text(reset.gain.errors.by_month, 2), carried.gain.mean,
+               error_text(carried.gain.errors.plain, 2),
+               error_text(carried.gain.errors.by_month, 2), 100 * changed_share);
   }
 
   /// For a rule that does not restrict single decisions.

@@ -20,7 +20,7 @@ const Evaluation* foresight_of(const std::vector<NamedEvaluation>& evaluations,
 }
 
 PairedDifference gain_of(const ComparisonRow& row) {
-  return row.difference.value_or(PairedDifference{NAN, NAN});
+  return row.difference.value_or(PairedDifference{NAN});
 }
 
 std::string table_block(const std::string& title, const std::vector<ComparisonRow>& rows) {
@@ -114,9 +114,9 @@ Table figures_table(const std::vector<ComparisonRow>& rows) {
       {{key::kGain, "gain", "{:+.1f}", 4, "Gain, EUR/day/MWh"},
        [](const R& r) { return gain_of(r).mean; }},
       {{key::kGainError, "s.e.", "{:.1f}", 4, "Its s.e."},
-       [](const R& r) { return gain_of(r).standard_error; }},
+       [](const R& r) { return gain_of(r).errors.plain; }},
       {{key::kGainErrorByMonth, "by month", "{:.1f}", 4, "Gain by month"},
-       [](const R& r) { return gain_of(r).standard_error_by_month; }},
+       [](const R& r) { return gain_of(r).errors.by_month; }},
       {{"worst_day_eur_per_mwh", "worst day", "{:.1f}", 4, "Worst day, EUR/MWh of capacity"},
        &R::worst_day},
       {{"cycles_per_day", "cycles", "{:.2f}", 4, "Cycles/day"}, &R::cycles_per_day},

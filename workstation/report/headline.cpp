@@ -29,7 +29,7 @@ std::string signed_text(double value) {
 
 /// Half width of the confidence interval; 0 if unknown.
 double half_width(const PairedDifference& difference) {
-  const double half = interval_half_width(difference.errors(), kShownCoverage);
+  const double half = interval_half_width(difference.errors, kShownCoverage);
   return std::isnan(half) ? 0 : half;
 }
 
@@ -67,7 +67,7 @@ std::string gain_row(const HeadlineGain& gain, double reach) {
     row += fmt::format(
         "<td data-label=\"Wear {:g}, EUR/day/MWh\"><span "
         "class=\"number\">{}{}</span><small>{}</small>{}</td>",
-        kHeadlineWears[w], signed_text(d.mean), plain_error(d.errors()), month_error(d.errors()),
+        kHeadlineWears[w], signed_text(d.mean), plain_error(d.errors), month_error(d.errors),
         bound ? "" : bar(d, reach));
   }
   return row + "</tr>\n";
@@ -80,7 +80,7 @@ std::string correction_text(const HeadlineGain& correction) {
     return fmt::format("Cost of the correction: not significant, {} against the {}",
                        difference_text(d), correction.against);
   }
-  const std::string size = fmt::format("{:.1f}{}", std::abs(d.mean), errors_text(d.errors()));
+  const std::string size = fmt::format("{:.1f}{}", std::abs(d.mean), errors_text(d.errors));
   return d.mean < 0 ? "Cost of the correction: " + size
                     : "The correction has no cost: it earns " + size + " more";
 }
@@ -89,7 +89,7 @@ std::string correction_text(const HeadlineGain& correction) {
 std::string rules_text(const HeadlineGain& rules) {
   const PairedDifference& d = rules.difference.front();
   if (!is_shown(d)) return fmt::format("not significant, {}", difference_text(d));
-  return d.mean < 0 ? fmt::format("{:.1f}{}", -d.mean, errors_text(d.errors()))
+  return d.mean < 0 ? fmt::format("{:.1f}{}", -d.mean, errors_text(d.errors))
                     : "none, they earn " + difference_text(d);
 }
 
@@ -133,12 +133,12 @@ HeadlineGain gain_over(const NamedEvaluation& exported, const NamedEvaluation& o
 }
 
 std::string difference_text(const PairedDifference& difference) {
-  return signed_text(difference.mean) + errors_text(difference.errors());
+  return signed_text(difference.mean) + errors_text(difference.errors);
 }
 
 bool is_shown(const PairedDifference& difference) {
   return std::abs(difference.mean) >
-         interval_half_width(difference.errors(), kShownCoverage);  // false for NaN
+         interval_half_width(difference.errors, kShownCoverage);  // false for NaN
 }
 
 const NamedEvaluation* find_own_student(const std::vector<NamedEvaluation>& evaluations) {

@@ -26,7 +26,7 @@ TrainResult train_by_default(const MarketSteps& market, const RunConfig& config)
 PairedDifference lead(const char* over, const Evaluation& teacher, const Evaluation& other) {
   const PairedDifference lead = paired_difference(teacher, other);
   fmt::print("  over {:8} {:.1f}: {:+.1f}, s.e. {:.1f}\n", over, other.profit_eur_per_day_per_mwh(),
-             lead.mean, lead.standard_error);
+             lead.mean, lead.errors.plain);
   return lead;
 }
 
@@ -55,14 +55,14 @@ TEST(LearningGate, TheTeacherIsAboveTheRuleAndLevelWithTabularAndTheProgram) {
     fmt::print("{}, {} days: {:.1f} EUR/day/MWh\n", carry_soc ? "carried over" : "day reset",
                days.size(), earned.profit_eur_per_day_per_mwh());
     const PairedDifference over_rule = lead("rule", earned, evaluate(market, days, rule, options));
-    EXPECT_GT(over_rule.mean, 2 * over_rule.standard_error);
+    EXPECT_GT(over_rule.mean, 2 * over_rule.errors.plain);
     // Level: another processor's vectors make another teacher, and a tie must pass.
     const PairedDifference over_tabular =
         lead("tabular", earned, evaluate(market, days, tabular, options));
-    EXPECT_GE(over_tabular.mean, -over_tabular.standard_error);
+    EXPECT_GE(over_tabular.mean, -over_tabular.errors.plain);
     const PairedDifference over_program =
         lead("program", earned, evaluate(market, days, program, options));
-    EXPECT_GE(over_program.mean, -over_program.standard_error);
+    EXPECT_GE(over_program.mean, -over_program.errors.plain);
   }
 }
 

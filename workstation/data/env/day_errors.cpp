@@ -28,7 +28,7 @@ double mean_of(const std::vector<DayValue>& days) {
 }
 
 DayErrors day_errors(const std::vector<DayValue>& days) {
-  if (days.empty()) return {kUnknown, kUnknown, 0, 0};
+  if (days.empty()) return {};
   const auto n = static_cast<double>(days.size());
   const double mean = mean_of(days);
   double squares = 0;

@@ -20,6 +20,7 @@
 // the error of few months may be small by chance [Angrist and Pischke 2009, 8.2.3].
 #pragma once
 
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -29,10 +30,10 @@ namespace bess {
 
 /// In the unit of the days; NaN if unknown: plain with one day, by_month with one month.
 struct DayErrors {
-  double plain;
-  double by_month;
-  int months;  ///< number of months with days
-  int days;
+  double plain = std::numeric_limits<double>::quiet_NaN();
+  double by_month = std::numeric_limits<double>::quiet_NaN();
+  int months = 0;  ///< number of months with days
+  int days = 0;
 };
 
 /// Local date, "2023-01-31", and the day's value; days of a month need not be adjacent.

@@ -138,7 +138,6 @@ DayErrors Evaluation::errors() const {
   for (const DayResult& day : days) profits.emplace_back(day.date, day.profit_eur / capacity_mwh);
   return day_errors(profits);
 }
-double Evaluation::standard_error() const { return errors().plain; }
 double Evaluation::worst_day_eur_per_mwh() const {
   const auto worst = std::ranges::min_element(days, {}, &DayResult::profit_eur);
   return worst == days.end() ? 0.0 : worst->profit_eur / capacity_mwh;
@@ -183,8 +182,7 @@ PairedDifference paired_difference(const Evaluation& a, const Evaluation& b) {
                                                  b.days[d].profit_eur / b.capacity_mwh);
     mean += differences.back().second / static_cast<double>(a.days.size());
   }
-  const DayErrors errors = day_errors(differences);
-  return {mean, errors.plain, errors.by_month, errors.months, errors.days};
+  return {mean, day_errors(differences)};
 }
 
 }  // namespace bess

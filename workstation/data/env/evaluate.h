@@ -61,8 +61,7 @@ struct Evaluation {
   [[nodiscard]] double profit_eur_per_day_per_mwh() const;
   /// Profit of the same decisions with another wear cost.
   [[nodiscard]] double profit_at_wear_eur_per_day_per_mwh(double other_wear_eur_per_mwh) const;
-  [[nodiscard]] DayErrors errors() const;       ///< of the mean over days, same unit
-  [[nodiscard]] double standard_error() const;  ///< the plain one; NaN for one day
+  [[nodiscard]] DayErrors errors() const;  ///< of the mean over days, same unit
   [[nodiscard]] double worst_day_eur_per_mwh() const;
   [[nodiscard]] double cycles_per_day() const;
   [[nodiscard]] double switches_per_day() const;
@@ -88,14 +87,7 @@ Evaluation evaluate(const MarketSteps& market, const std::vector<MarketDay>& day
 /// Mean and standard errors of the daily difference a - b, EUR per day per MWh, on the same days.
 struct PairedDifference {
   double mean;
-  double standard_error;  ///< as if days were independent; NaN for one day
-  double standard_error_by_month = std::numeric_limits<double>::quiet_NaN();  ///< NaN for one month
-  int months = 0;
-  int days = 0;
-
-  [[nodiscard]] DayErrors errors() const {
-    return {standard_error, standard_error_by_month, months, days};
-  }
+  DayErrors errors{};
 };
 /// Throws std::logic_error unless both have the same days.
 PairedDifference paired_difference(const Evaluation& a, const Evaluation& b);

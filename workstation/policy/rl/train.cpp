@@ -29,7 +29,7 @@ double gain_at_least_eur_per_day_per_mwh(const Evaluation& earned,
   }
   const PairedDifference gain = paired_difference(earned, program);
   const double coverage = 1 - (1 - kShownCoverage) / static_cast<double>(looks);
-  const double half_width = interval_half_width(gain.errors(), coverage);
+  const double half_width = interval_half_width(gain.errors, coverage);
   return std::isnan(half_width) ? kFarBelow : gain.mean - half_width;
 }
 

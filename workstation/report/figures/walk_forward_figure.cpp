@@ -27,8 +27,8 @@ std::string format_omega_table(const std::vector<OmegaPoint>& points, const Eval
         p.omega, p.certificate.violations_of(1), p.certificate.violations_of(2),
         p.certificate.violations_of(3), p.divergence_nats, 100 * p.agreement,
         p.evaluation.profit_eur_per_day_per_mwh(), error_text(p.evaluation.errors().plain, 1),
-        error_text(p.evaluation.errors().by_month, 1), gain.mean,
-        error_text(gain.standard_error, 1), error_text(gain.standard_error_by_month, 1));
+        error_text(p.evaluation.errors().by_month, 1), gain.mean, error_text(gain.errors.plain, 1),
+        error_text(gain.errors.by_month, 1));
   }
   return table;
 }
@@ -45,9 +45,9 @@ std::string omega_csv(const std::vector<OmegaPoint>& points, const Evaluation& t
                        p.omega, p.certificate.states_checked, p.certificate.violations_of(1),
                        p.certificate.violations_of(2), p.certificate.violations_of(3),
                        p.divergence_nats, p.agreement, p.evaluation.profit_eur_per_day_per_mwh(),
-                       gain.standard_error, p.evaluation.standard_error(), gain.mean,
+                       gain.errors.plain, p.evaluation.errors().plain, gain.mean,
                        error_text(p.evaluation.errors().by_month, 4, ""),
-                       error_text(gain.standard_error_by_month, 4, ""));
+                       error_text(gain.errors.by_month, 4, ""));
   }
   return csv;
 }

@@ -79,8 +79,8 @@ std::string candidate_text(const CandidateRun& candidate) {
                         of->profit_eur_per_day_per_mwh(), total_eur(*of));
   }
   text += fmt::format("  {:<24} {:>+9.1f} standard error {:.1f} (by month {})\n",
-                      "gain, day by day", candidate.gain.mean, candidate.gain.standard_error,
-                      error_text(candidate.gain.standard_error_by_month, 1));
+                      "gain, day by day", candidate.gain.mean, candidate.gain.errors.plain,
+                      error_text(candidate.gain.errors.by_month, 1));
   text +=
       fmt::format("  {} of {} decisions differ\n", candidate.differing.size(), candidate.decisions);
   std::map<std::string, int> changes;
@@ -92,15 +92,14 @@ std::string candidate_text(const CandidateRun& candidate) {
 namespace {
 
 Json candidate_json(const CandidateRun& candidate) {
-  return Json::object(
-      {{"days", candidate.before.days.size()},
-       {"decisions", candidate.decisions},
-       {"differing", candidate.differing.size()},
-       {"before_eur", Decimals{total_eur(candidate.before), 4}},
-       {"now_eur", Decimals{total_eur(candidate.now), 4}},
-       {"gain_eur_per_day_per_mwh", Decimals{candidate.gain.mean, 4}},
-       {"standard_error", Decimals{candidate.gain.standard_error, 4}},
-       {"standard_error_by_month", Decimals{candidate.gain.standard_error_by_month, 4}}});
+  return Json::object({{"days", candidate.before.days.size()},
+                       {"decisions", candidate.decisions},
+                       {"differing", candidate.differing.size()},
+                       {"before_eur", Decimals{total_eur(candidate.before), 4}},
+                       {"now_eur", Decimals{total_eur(candidate.now), 4}},
+                       {"gain_eur_per_day_per_mwh", Decimals{candidate.gain.mean, 4}},
+                       {"standard_error", Decimals{candidate.gain.errors.plain, 4}},
+                       {"standard_error_by_month", Decimals{candidate.gain.errors.by_month, 4}}});
 }
 
 namespace fs = std::filesystem;

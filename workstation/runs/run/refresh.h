@@ -43,7 +43,7 @@ struct CandidateRun {
   std::vector<DifferingDecision> differing;  ///< in time order
 
   /// Worse by more than the standard error of the paired days.
-  [[nodiscard]] bool is_worse() const { return gain.mean + gain.standard_error < 0; }
+  [[nodiscard]] bool is_worse() const { return gain.mean + gain.errors.plain < 0; }
 };
 
 /// Precondition: `market` has test days.

@@ -319,8 +319,8 @@ std::string format_runs_table(const std::vector<RunSummary>& runs) {
         run.folder.path.string(), width, run.record.value("seed"), rules_of(run), row->days,
         row->profit, error_text(row->errors.plain, 1), error_text(row->errors.by_month, 1),
         over_first ? fmt::format("{:+.1f}", over_first->mean) : "-",
-        over_first ? error_text(over_first->standard_error, 1) : "-",
-        over_first ? error_text(over_first->standard_error_by_month, 1) : "-",
+        over_first ? error_text(over_first->errors.plain, 1) : "-",
+        over_first ? error_text(over_first->errors.by_month, 1) : "-",
         row->profit_at_reference_wear,
         row->foresight_share ? fmt::format("{:.1f}", 100 * *row->foresight_share) : "-",
         student.day_reset.profit_eur_per_day_per_mwh(), run.record.figures->weights_hash);

@@ -63,8 +63,8 @@ Cell gain_cell(const Evaluation& days, const Evaluation& first) {
   if (&days == &first || !same) return {kNoValue};
   const PairedDifference gain = paired_difference(days, first);
   return number_cell(
-      fmt::format("{:+.1f} \u00b1 {} ({})", gain.mean, error_text(gain.standard_error, 1, kNoValue),
-                  error_text(gain.standard_error_by_month, 1, kNoValue)),
+      fmt::format("{:+.1f} \u00b1 {} ({})", gain.mean, error_text(gain.errors.plain, 1, kNoValue),
+                  error_text(gain.errors.by_month, 1, kNoValue)),
       gain.mean);
 }
 

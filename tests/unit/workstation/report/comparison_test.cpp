@@ -34,11 +34,11 @@ TEST(Comparison, RowsAreThoseOfTheEvaluations) {
   EXPECT_DOUBLE_EQ(rows[0].profit, 200);
   EXPECT_FALSE(rows[0].difference.has_value());
   EXPECT_DOUBLE_EQ(rows[1].profit, policies[1].day_reset.profit_eur_per_day_per_mwh());
-  EXPECT_DOUBLE_EQ(rows[1].errors.plain, policies[1].day_reset.standard_error());
+  EXPECT_DOUBLE_EQ(rows[1].errors.plain, policies[1].day_reset.errors().plain);
   const PairedDifference d = paired_difference(policies[1].day_reset, policies[0].day_reset);
   ASSERT_TRUE(rows[1].difference.has_value());
   EXPECT_DOUBLE_EQ(rows[1].difference->mean, d.mean);
-  EXPECT_DOUBLE_EQ(rows[1].difference->standard_error, d.standard_error);
+  EXPECT_DOUBLE_EQ(rows[1].difference->errors.plain, d.errors.plain);
   EXPECT_DOUBLE_EQ(rows[1].worst_day, 200);
   ASSERT_TRUE(rows[1].foresight_share.has_value());
   EXPECT_NEAR(*rows[1].foresight_share, 0.5, 1e-12);

@@ -72,8 +72,8 @@ TEST(Headline, IsCarriedOverAndNamesTheFriendlierAccounting) {
 TEST(Headline, GainsArePairedAndCountWear) {
   const Headline headline = headline_of(all()).value();
   EXPECT_DOUBLE_EQ(headline.gains[1].difference[0].mean, 20);
-  EXPECT_DOUBLE_EQ(headline.gains[1].difference[0].standard_error, 0);  // 20 on each of the days
-  EXPECT_DOUBLE_EQ(headline.gains[1].difference[1].mean, 10);           // 2 MWh per day more, at 10
+  EXPECT_DOUBLE_EQ(headline.gains[1].difference[0].errors.plain, 0);  // 20 on each of the days
+  EXPECT_DOUBLE_EQ(headline.gains[1].difference[1].mean, 10);         // 2 MWh per day more, at 10
   EXPECT_DOUBLE_EQ(headline.gains[0].difference[1].mean, headline.gains[0].difference[0].mean + 10);
 }
 

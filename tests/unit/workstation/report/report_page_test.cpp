@@ -53,7 +53,7 @@ TEST(ReportTables, RulesAreShownWithTheirScopeAndViolations) {
   const Certificate plain = ruled_certificate(1000);
   const Certificate corrected = ruled_certificate(0);
   RulePrices prices{};
-  prices.rules.push_back({"", "rest", {PairedDifference{-109.5, 2}, PairedDifference{-80, 3}}});
+  prices.rules.push_back({"", "rest", {PairedDifference{-109.5, {2}}, PairedDifference{-80, {3}}}});
   const std::string html = rules_html(plain, corrected, ContextKind::kLevel, &prices);
   for (const char* said : {"rest \u2013 ", ">81.04</td>", ">1,234</td>", ">0</td>", ">student</td>",
                            ">guard</td>", ">rest, alone</th>", "\u2212109.5 \u00b1 2.0"}) {

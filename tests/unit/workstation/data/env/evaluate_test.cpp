@@ -117,7 +117,7 @@ TEST(Evaluate, FiguresOfSeveralDays) {
   result.capacity_mwh = 2;
   result.days = {{"a", 10, 1, 4, 0.2}, {"b", 30, 2, 6, 0.4}};
   EXPECT_DOUBLE_EQ(result.profit_eur_per_day_per_mwh(), 10);
-  EXPECT_DOUBLE_EQ(result.standard_error(), 5);
+  EXPECT_DOUBLE_EQ(result.errors().plain, 5);
   EXPECT_DOUBLE_EQ(result.worst_day_eur_per_mwh(), 5);
   EXPECT_DOUBLE_EQ(result.cycles_per_day(), 1.5);
   EXPECT_DOUBLE_EQ(result.switches_per_day(), 5);
@@ -126,7 +126,7 @@ TEST(Evaluate, FiguresOfSeveralDays) {
   other.days[0].profit_eur = 6;
   const PairedDifference difference = paired_difference(result, other);
   EXPECT_DOUBLE_EQ(difference.mean, 1);
-  EXPECT_DOUBLE_EQ(difference.standard_error, 1);
+  EXPECT_DOUBLE_EQ(difference.errors.plain, 1);
   other.days.pop_back();
   EXPECT_THROW(paired_difference(result, other), std::logic_error);
 }

@@ -66,7 +66,7 @@ TEST(CandidateRun, IsWorseBeyondItsErrorAlone) {
   EXPECT_FALSE(same.is_worse());
   const StudentFile idle{constant_net(Action::kIdle), {}, "", {}};
   const CandidateRun lost = judge_refit(trader(50, 150), idle, market, {});
-  EXPECT_LT(lost.gain.mean, -3 * lost.gain.standard_error);
+  EXPECT_LT(lost.gain.mean, -3 * lost.gain.errors.plain);
   EXPECT_TRUE(lost.is_worse());
   const CandidateRun won = judge_refit(idle, trader(50, 150), market, {});
   EXPECT_FALSE(won.is_worse());
@@ -75,7 +75,7 @@ TEST(CandidateRun, IsWorseBeyondItsErrorAlone) {
   CandidateRun near = same;
   near.gain = {-1.0, 1.1};
   EXPECT_FALSE(near.is_worse());
-  near.gain.standard_error = 0.9;
+  near.gain.errors.plain = 0.9;
   EXPECT_TRUE(near.is_worse());
 }
 
