@@ -73,7 +73,7 @@ TEST(CandidateRun, IsWorseBeyondItsErrorAlone) {
   EXPECT_NEAR(won.gain.mean, -lost.gain.mean, 1e-9);
   EXPECT_NEAR(won.gain.mean, won.now.profit_eur_per_day_per_mwh(), 1e-9) << "idle earns nothing";
   CandidateRun near = same;
-  near.gain = {-1.0, 1.1};
+  near.gain = {-1.0, {1.1}};
   EXPECT_FALSE(near.is_worse());
   near.gain.errors.plain = 0.9;
   EXPECT_TRUE(near.is_worse());
