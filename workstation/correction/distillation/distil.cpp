@@ -362,10 +362,8 @@ void Distiller::backward_student(Worker& worker) const {
 /// Nothing if no rule names a state of the lattice.
 std::optional<ConstraintLayer> Distiller::layer_with_rules(
     const Lattice& lattice, const CorrectionOptions& correction) const {
-  LatticeState context{};
-  context.minute_of_quarter_hour = static_cast<std::int16_t>(lattice.minute_of_quarter_hour);
-  context.quarter_hour = static_cast<std::int16_t>(lattice.quarter_hour);
-  context.context_class = static_cast<std::int16_t>(lattice.context_class);
+  const LatticeState context =
+      lattice_context(lattice.minute_of_quarter_hour, lattice.quarter_hour, lattice.context_class);
   std::vector<DifferenceRow> rows =
       lattice_rows(options_.rules, teacher_.context.kind, context, lattice.axes, correction);
   if (rows.empty()) return {};

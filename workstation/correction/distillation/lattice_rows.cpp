@@ -113,10 +113,8 @@ std::vector<DifferenceRow> lattice_rows(const RuleSet& rules, ContextKind kind,
 
 std::vector<DifferenceRow> property_rows(const CorrectionOptions& options,
                                          const LatticeAxes& axes) {
-  LatticeState any_context{};
-  any_context.context_class = 1;
-  return lattice_rows(built_in_rules(options.thresholds), ContextKind::kMonth, any_context, axes,
-                      options);
+  return lattice_rows(built_in_rules(options.thresholds), ContextKind::kMonth,
+                      lattice_context(0, 0, 1), axes, options);
 }
 
 }  // namespace bess

@@ -105,13 +105,12 @@ bool RuleSamples::holds(const BoundRule& bound_rule, const LatticeState& context
 }
 
 /// The tightest state of "at least" is at the highest price and SoC, of "at most" at the lowest.
-ConstraintState RuleSamples::corner(const BoundRule& bound_rule, LatticeState context,
+ConstraintState RuleSamples::corner(const BoundRule& bound_rule, const LatticeState& context,
                                     bool at_least) {
   const LatticeBox& box = bound_rule.box;
-  context.soc_index = static_cast<std::int16_t>(at_least ? box.soc_last : box.soc_first);
-  context.price_eur_per_mwh = static_cast<std::int16_t>(
-      kLatticePriceMinEurPerMwh + (at_least ? box.price_last : box.price_first));
-  return {context, bound_rule.rule.actions(), bound_rule.index};
+  return {at_least ? at_indices(context, box.soc_last, box.price_last)
+                   : at_indices(context, box.soc_first, box.price_first),
+          bound_rule.rule.actions(), bound_rule.index};
 }
 
 /// An operator's rule draws its hour before the minute, a built-in one after it: students in use
@@ -123,16 +122,12 @@ LatticeState RuleSamples::draw_context(const BoundRule& bound_rule, Random& rand
     return static_cast<int>(random.index(static_cast<std::size_t>(box.quarter_hour_count)));
   };
   int since = hour_first ? draw_hour() : 0;
-  LatticeState context{};
-  context.minute_of_quarter_hour =
-      static_cast<std::int16_t>(random.index(kMinuteOfQuarterHourCount));
+  const auto minute = static_cast<int>(random.index(kMinuteOfQuarterHourCount));
   if (!hour_first) since = draw_hour();
-  context.quarter_hour =
-      static_cast<std::int16_t>((box.quarter_hour_first + since) % kQuarterHourCount);
   const auto classes = std::popcount(static_cast<unsigned>(bound_rule.box.classes));
-  context.context_class = static_cast<std::int16_t>(
+  return lattice_context(
+      minute, (box.quarter_hour_first + since) % kQuarterHourCount,
       class_at(bound_rule.box.classes, random.index(static_cast<std::size_t>(classes))));
-  return context;
 }
 
 ConstraintState RuleSamples::draw(std::size_t index,
@@ -147,11 +142,9 @@ ConstraintState RuleSamples::draw(std::size_t index,
     const auto between = [&random](int first, int last) {
       return first + static_cast<int>(random.index(static_cast<std::size_t>(last - first) + 1));
     };
-    context.soc_index =
-        static_cast<std::int16_t>(between(bound_rule.box.soc_first, bound_rule.box.soc_last));
-    context.price_eur_per_mwh = static_cast<std::int16_t>(
-        kLatticePriceMinEurPerMwh + between(bound_rule.box.price_first, bound_rule.box.price_last));
-    return {context, bound_rule.rule.actions(), bound_rule.index};
+    const int soc = between(bound_rule.box.soc_first, bound_rule.box.soc_last);
+    const int price = between(bound_rule.box.price_first, bound_rule.box.price_last);
+    return {at_indices(context, soc, price), bound_rule.rule.actions(), bound_rule.index};
   }
   const bool has_lower = bound_rule.rule.lowest() > Action::kDischarge;
   const bool has_upper = bound_rule.rule.highest() < Action::kCharge;

@@ -103,7 +103,8 @@ class RuleSamples {
   };
   [[nodiscard]] bool holds(const BoundRule& bound_rule, const LatticeState& context) const;
   [[nodiscard]] LatticeState draw_context(const BoundRule& bound_rule, Random& random) const;
-  static ConstraintState corner(const BoundRule& bound_rule, LatticeState context, bool at_least);
+  static ConstraintState corner(const BoundRule& bound_rule, const LatticeState& context,
+                                bool at_least);
 
   ContextKind kind_;
   std::vector<BoundRule> bound_rules_;

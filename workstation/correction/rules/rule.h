@@ -164,6 +164,19 @@ std::string held_by(const Rule& rule, ContextKind kind);
 /// Whether some price of the box is on the lattice.
 bool overlaps_lattice(const RuleBox& box);
 
+/// State of a context with SoC and price 0.
+constexpr LatticeState lattice_context(int minute_of_quarter_hour, int quarter_hour,
+                                       int context_class) {
+  return {static_cast<std::int16_t>(minute_of_quarter_hour),
+          static_cast<std::int16_t>(quarter_hour), static_cast<std::int16_t>(context_class), 0, 0};
+}
+/// The state of the same context at these indices.
+constexpr LatticeState at_indices(LatticeState context, int soc, int price) {
+  context.soc_index = static_cast<std::int16_t>(soc);
+  context.price_eur_per_mwh = static_cast<std::int16_t>(kLatticePriceMinEurPerMwh + price);
+  return context;
+}
+
 /// Box on the lattice (indices, ends included) with its context classes.
 struct LatticeBox {
   int price_first, price_last;  ///< indices from kLatticePriceMinEurPerMwh

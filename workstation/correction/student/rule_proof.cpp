@@ -112,10 +112,7 @@ void RuleChecker::keep(std::size_t rule, int soc, int price) {
   if (kept_[with] == (is_built_in ? kKeptOfPropertiesPerContext : kKeptPerContext)) return;
   if (!is_built_in && states.size() >= kKeptPerRule) return;
   ++kept_[with];
-  LatticeState state = context_;
-  state.soc_index = static_cast<std::int16_t>(soc);
-  state.price_eur_per_mwh = static_cast<std::int16_t>(kLatticePriceMinEurPerMwh + price);
-  states.push_back(state);
+  states.push_back(at_indices(context_, soc, price));
 }
 
 std::optional<WorstState> worst_state(const StudentNet& net, const Rule& rule,
@@ -140,16 +137,13 @@ std::optional<WorstState> worst_state(const StudentNet& net, const Rule& rule,
   };
   for (const LatticeState& state : count.counterexamples) look(state);
   for (int c = 0; c < kContextCount; ++c) {
-    LatticeState state = context_at(c);
-    if (!holds_in_context(rule.box, net.context.kind, state.quarter_hour, state.context_class)) {
+    const LatticeState context = context_at(c);
+    if (!holds_in_context(rule.box, net.context.kind, context.quarter_hour,
+                          context.context_class)) {
       continue;
     }
-    for (const auto& [soc, price] :
-         {std::pair{box.soc_first, box.price_first}, std::pair{box.soc_last, box.price_last}}) {
-      state.soc_index = static_cast<std::int16_t>(soc);
-      state.price_eur_per_mwh = static_cast<std::int16_t>(kLatticePriceMinEurPerMwh + price);
-      look(state);
-    }
+    look(at_indices(context, box.soc_first, box.price_first));
+    look(at_indices(context, box.soc_last, box.price_last));
   }
   return worst;
 }

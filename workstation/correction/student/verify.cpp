@@ -186,10 +186,7 @@ class GridFiller {
 
  private:
   [[nodiscard]] LatticeState state_at(int soc, int price) const {
-    LatticeState state = state_;
-    state.soc_index = static_cast<std::int16_t>(soc);
-    state.price_eur_per_mwh = static_cast<std::int16_t>(kLatticePriceMinEurPerMwh + price);
-    return state;
+    return at_indices(state_, soc, price);
   }
   /// Flattened: inlines the net with this file's optimisation. A separate function might be linked
   /// from a test program's unoptimised copy.
@@ -249,21 +246,14 @@ void thin_out(std::vector<LatticeState>& states, std::size_t count_max) {
 }  // namespace
 
 LatticeState context_at(int index) {
-  return {.minute_of_quarter_hour = static_cast<std::int16_t>(index % kMinuteOfQuarterHourCount),
-          .quarter_hour =
-              static_cast<std::int16_t>(index / kMinuteOfQuarterHourCount % kQuarterHourCount),
-          .context_class = static_cast<std::int16_t>(
-              index / (kMinuteOfQuarterHourCount * kQuarterHourCount) + 1),
-          .soc_index = 0,
-          .price_eur_per_mwh = 0};
+  return lattice_context(index % kMinuteOfQuarterHourCount,
+                         index / kMinuteOfQuarterHourCount % kQuarterHourCount,
+                         index / (kMinuteOfQuarterHourCount * kQuarterHourCount) + 1);
 }
 
-std::int64_t fill_action_grid(const StudentNet& net, int minute_of_quarter_hour, int quarter_hour,
-                              int context_class, bool exhaustive, std::vector<std::int8_t>& grid) {
+std::int64_t fill_action_grid(const StudentNet& net, const LatticeState& context, bool exhaustive,
+                              std::vector<std::int8_t>& grid) {
   const BoxBounds bounds(net);
-  const LatticeState context{static_cast<std::int16_t>(minute_of_quarter_hour),
-                             static_cast<std::int16_t>(quarter_hour),
-                             static_cast<std::int16_t>(context_class), 0, 0};
   return GridFiller(net, bounds).fill(context, exhaustive, grid);
 }
 

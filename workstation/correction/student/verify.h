@@ -38,7 +38,7 @@ LatticeState context_at(int index);
 
 /// Actions of one context, [SoC][price], as Action's integers. Returns the number of evaluated
 /// states.
-std::int64_t fill_action_grid(const StudentNet& net, int minute_of_quarter_hour, int quarter_hour,
-                              int context_class, bool exhaustive, std::vector<std::int8_t>& grid);
+std::int64_t fill_action_grid(const StudentNet& net, const LatticeState& context, bool exhaustive,
+                              std::vector<std::int8_t>& grid);
 
 }  // namespace bess

@@ -89,8 +89,10 @@ Json regime_marks(const std::vector<std::string>& dates) {
 
 ActionGrid student_grid(const StudentNet& net, const PolicyContext& context) {
   ActionGrid grid;
-  fill_action_grid(net, context.minute_of_quarter_hour, context.quarter_hour, context.context_class,
-                   false, grid);
+  fill_action_grid(
+      net,
+      lattice_context(context.minute_of_quarter_hour, context.quarter_hour, context.context_class),
+      false, grid);
   return grid;
 }
 

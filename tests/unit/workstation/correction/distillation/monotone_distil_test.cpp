@@ -229,7 +229,7 @@ int rising_contexts(const StudentNet& net, std::uint64_t seed) {
   std::vector<std::int8_t> grid;
   for (int c = 0; c < kContexts; ++c) {
     const LatticeState s = random_state(random);
-    fill_action_grid(net, s.minute_of_quarter_hour, s.quarter_hour, s.context_class, true, grid);
+    fill_action_grid(net, s, true, grid);
     bool rises = false;
     for (int soc = 0; soc < kSocCount; ++soc) {
       for (int price = 0; price < kPriceCount; ++price) {

@@ -36,7 +36,7 @@ class Actions {
 
  private:
   static void fill(const StudentNet& net, const LatticeState& s, ActionGrid& grid) {
-    fill_action_grid(net, s.minute_of_quarter_hour, s.quarter_hour, s.context_class, true, grid);
+    fill_action_grid(net, s, true, grid);
   }
   static Action in(const ActionGrid& grid, int soc, int price) {
     return static_cast<Action>(

@@ -16,22 +16,20 @@ TEST(Verify, BoundsAndEnumerationGiveTheSameGrid) {
   const struct {
     const char* name;
     StudentNet net;
-    int minute_of_quarter_hour, quarter_hour, context_class;
+    LatticeState context;
   } cases[] = {
-      {"random", seeded_net(1), 0, 0, 1},
-      {"random, another", seeded_net(2), 7, 50, 6},
-      {"compiled student", compiled_student().net, 14, 95, 12},
-      {"adversarial", adversarial_net(1), 3, 20, 3},
-      {"adversarial, another", adversarial_net(2), 14, 0, 12},
+      {"random", seeded_net(1), {0, 0, 1, 0, 0}},
+      {"random, another", seeded_net(2), {7, 50, 6, 0, 0}},
+      {"compiled student", compiled_student().net, {14, 95, 12, 0, 0}},
+      {"adversarial", adversarial_net(1), {3, 20, 3, 0, 0}},
+      {"adversarial, another", adversarial_net(2), {14, 0, 12, 0, 0}},
   };
   for (const auto& c : cases) {
     SCOPED_TRACE(c.name);
     ASSERT_LE(accumulator_bound(c.net), INT32_MAX);
     std::vector<std::int8_t> bounded, exhaustive;
-    const std::int64_t some = fill_action_grid(c.net, c.minute_of_quarter_hour, c.quarter_hour,
-                                               c.context_class, false, bounded);
-    const std::int64_t all = fill_action_grid(c.net, c.minute_of_quarter_hour, c.quarter_hour,
-                                              c.context_class, true, exhaustive);
+    const std::int64_t some = fill_action_grid(c.net, c.context, false, bounded);
+    const std::int64_t all = fill_action_grid(c.net, c.context, true, exhaustive);
     EXPECT_EQ(all, kContextStates);
     EXPECT_LE(some, kContextStates);
     EXPECT_TRUE(bounded == exhaustive);
@@ -46,8 +44,7 @@ TEST(Verify, BoundsAgreeWithTheNetOnManyContexts) {
     const StudentNet& net = nets[round % std::size(nets)];
     LatticeState state = random_state(random);
     std::vector<std::int8_t> grid;
-    fill_action_grid(net, state.minute_of_quarter_hour, state.quarter_hour, state.context_class,
-                     false, grid);
+    fill_action_grid(net, state, false, grid);
     ASSERT_EQ(grid.size(), static_cast<std::size_t>(kContextStates));
     for (int n = 0; n < 2000; ++n) {
       const LatticeState other = random_state(random);
@@ -62,8 +59,9 @@ TEST(Verify, BoundsAgreeWithTheNetOnManyContexts) {
 
 TEST(Verify, BoundsSaveWork) {
   std::vector<std::int8_t> grid;
-  EXPECT_LT(fill_action_grid(LinearNet{}.net(), 0, 0, 1, false, grid), kContextStates / 20);
-  EXPECT_LT(fill_action_grid(compiled_student().net, 5, 30, 4, false, grid), kContextStates / 4);
+  EXPECT_LT(fill_action_grid(LinearNet{}.net(), {0, 0, 1, 0, 0}, false, grid), kContextStates / 20);
+  EXPECT_LT(fill_action_grid(compiled_student().net, {5, 30, 4, 0, 0}, false, grid),
+            kContextStates / 4);
 }
 
 struct Counts {
