@@ -13,7 +13,7 @@
 #include "shared/utc_text.h"
 #include "workstation/base/answer.h"
 #include "workstation/cli/commands.h"
-#include "workstation/data/env/final_charge.h"
+#include "workstation/data/env/evaluate.h"
 #include "workstation/policy/planners/baselines.h"
 #include "workstation/report/comparison.h"
 #include "workstation/report/evaluation_days.h"

@@ -11,7 +11,7 @@
 #include "shared/host/file.h"
 #include "shared/host/text.h"
 #include "workstation/base/answer.h"
-#include "workstation/data/env/drawdown.h"
+#include "workstation/data/env/evaluate.h"
 #include "workstation/report/comparison.h"
 #include "workstation/report/figures/html.h"
 #include "workstation/report/figures/picture_table.h"

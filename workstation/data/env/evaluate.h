@@ -16,6 +16,7 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -40,7 +41,7 @@ struct DayResult {
   double soc_end_frac;
   double throughput_mwh = 0;  ///< charged and discharged, grid side
   double soc_start_frac = 0;
-  double charge_value_eur = 0;  ///< part of the profit: final charge (final_charge.h)
+  double charge_value_eur = 0;  ///< part of the profit: value of the final charge
 };
 
 /// Final charge as a part of the profit, EUR per day per MWh of capacity; NaN if not valued.
@@ -91,5 +92,44 @@ struct PairedDifference {
 };
 /// Throws std::logic_error unless both have the same days.
 PairedDifference paired_difference(const Evaluation& a, const Evaluation& b);
+
+// Final charge as money. With the SoC carried over, a policy starts with the initial SoC and ends
+// with any. The difference is sold or bought back at the mean settled price of the counted days,
+// with losses, costs and wear, so that ending empty gives no advantage.
+//
+// Foresight also runs the days between the counted ones and may enter counted days charged. For it
+// the changes over all counted days are summed, which for every other policy equals the last SoC
+// minus the initial one.
+//
+// Not used with the day reset: there the final charge of each day is not valued, which favours the
+// policy.
+
+/// Mean over the steps of `days`, which must not be empty.
+double mean_settled_eur_per_mwh(const MarketSteps& market, const std::vector<MarketDay>& days);
+
+/// Adds the value of the final charge (negative if below the initial SoC) to the last day of
+/// `carried_over`: profit, throughput and charge_value_eur. May be called once; no effect without
+/// days.
+void value_charge_left(Evaluation& carried_over, const BatteryParameters& battery,
+                       double price_eur_per_mwh);
+
+/// Evaluates `days`, which must not be empty, with the SoC carried over; values the final charge.
+Evaluation evaluate_carried_over(const MarketSteps& market, const std::vector<MarketDay>& days,
+                                 Policy& policy, const BatteryParameters& battery,
+                                 double initial_soc_frac,
+                                 std::vector<StepRecord>* records = nullptr);
+
+// Drawdown of a policy's daily results: the largest fall of the cumulative profit from the end of
+// one day to that of a later one, starting at 0; not within a day.
+
+/// EUR per MWh of capacity, by day.
+std::vector<double> daily_profits(const Evaluation& evaluation);
+
+/// Running sum.
+std::vector<double> cumulative(std::span<const double> days);
+/// Each sum minus the highest so far, the initial 0 included: not positive.
+std::vector<double> below_peak(std::span<const double> cumulative);
+/// Largest fall, not negative.
+double drawdown(std::span<const double> days);
 
 }  // namespace bess

@@ -6,8 +6,7 @@
 #include <cmath>
 
 #include "shared/host/user_error.h"
-#include "workstation/data/env/drawdown.h"
-#include "workstation/data/env/final_charge.h"
+#include "workstation/data/env/evaluate.h"
 
 namespace bess {
 namespace {

@@ -63,7 +63,7 @@ struct WalkForward {
   std::vector<Evaluation> by_month;  ///< parallel to `months`
   Evaluation day_reset{};            ///< day-reset accounting; empty unless requested
 
-  /// Defined in drawdown.h, EUR per MWh of capacity.
+  /// Defined in evaluate.h, EUR per MWh of capacity.
   [[nodiscard]] double drawdown_eur_per_mwh() const;
   /// Profit after each day, EUR per MWh of capacity.
   [[nodiscard]] std::vector<double> cumulative_eur_per_mwh() const;

@@ -2,7 +2,7 @@
 
 #include "shared/host/user_error.h"
 #include "workstation/correction/student/student_policy.h"
-#include "workstation/data/env/final_charge.h"
+#include "workstation/data/env/evaluate.h"
 #include "workstation/policy/planners/baselines.h"
 
 namespace bess {

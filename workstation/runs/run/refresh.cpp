@@ -11,7 +11,7 @@
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
 #include "workstation/correction/student/student_policy.h"
-#include "workstation/data/env/final_charge.h"
+#include "workstation/data/env/evaluate.h"
 #include "workstation/runs/chain/chain_steps.h"
 #include "workstation/runs/chain/folder_lock.h"
 #include "workstation/runs/chain/price_input.h"

@@ -21,7 +21,7 @@
 #include "workstation/correction/rules/ruled_policy.h"
 #include "workstation/correction/student/certificate.h"
 #include "workstation/correction/student/student_policy.h"
-#include "workstation/data/env/final_charge.h"
+#include "workstation/data/env/evaluate.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/page_data.h"
 #include "workstation/runs/chain/run_config.h"

@@ -9,7 +9,7 @@
 #include "shared/host/user_error.h"
 #include "workstation/base/parallel_for.h"
 #include "workstation/base/progress.h"
-#include "workstation/data/env/final_charge.h"
+#include "workstation/data/env/evaluate.h"
 #include "workstation/data/market/series/local_date.h"
 #include "workstation/policy/planners/baselines.h"
 #include "workstation/runs/chain/policy_factory.h"

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "tests/support/tokens.h"
-#include "workstation/data/env/final_charge.h"
+#include "workstation/data/env/evaluate.h"
 
 namespace bess {
 namespace {

@@ -11,7 +11,7 @@
 #include "tests/support/teachers.h"
 #include "workstation/correction/distillation/distil.h"
 #include "workstation/correction/student/student_file.h"
-#include "workstation/data/env/final_charge.h"
+#include "workstation/data/env/evaluate.h"
 #include "workstation/data/market/model/simulated_market.h"
 #include "workstation/data/market/series/local_date.h"
 #include "workstation/report/report.h"

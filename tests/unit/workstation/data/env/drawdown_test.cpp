@@ -1,4 +1,4 @@
-#include "workstation/data/env/drawdown.h"
+#include "workstation/data/env/evaluate.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Value of the final charge, by hand; ending empty gains nothing.
-#include "workstation/data/env/final_charge.h"
+#include "workstation/data/env/evaluate.h"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@
 #include "tests/support/tokens.h"
 #include "tests/support/user_error_of.h"
 #include "tests/unit/workstation/report/report_test_support.h"
-#include "workstation/data/env/final_charge.h"
+#include "workstation/data/env/evaluate.h"
 #include "workstation/report/evaluation_days.h"
 #include "workstation/report/headline.h"
 
