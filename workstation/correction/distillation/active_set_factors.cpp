@@ -1,4 +1,4 @@
-#include "workstation/correction/distillation/active_set_factors.h"
+#include "workstation/correction/distillation/quadratic_program.h"
 
 #include <algorithm>
 #include <cmath>
