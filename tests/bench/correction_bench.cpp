@@ -13,7 +13,7 @@
 #include "tests/bench/registry.h"
 #include "tests/support/cvxopt_peer.h"
 #include "workstation/base/random.h"
-#include "workstation/correction/distillation/isotonic.h"
+#include "workstation/correction/distillation/correction_layer.h"
 
 namespace bess {
 namespace {

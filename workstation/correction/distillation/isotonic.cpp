@@ -1,4 +1,4 @@
-#include "workstation/correction/distillation/isotonic.h"
+#include "workstation/correction/distillation/correction_layer.h"
 
 #include <algorithm>
 #include <cmath>
