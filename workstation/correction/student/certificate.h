@@ -3,16 +3,86 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "shared/features.h"
+#include "shared/nn/student_net.h"
 #include "shared/price_thresholds.h"
 #include "workstation/correction/rules/properties.h"
-#include "workstation/correction/student/rule_proof.h"
+#include "workstation/correction/rules/rule.h"
 
 namespace bess {
+
+// Proof of rules, built-in and operator's: each is a predicate over the lattice, counted by name on
+// the action grids that verify.h fills.
+//   actions    states of the box whose action is not allowed
+//   direction  pairs of neighbours along the input between which the action moves the wrong way
+
+/// Result for one rule.
+struct RuleCount {
+  bool binds_student = false;  ///< false: guard only, not counted
+  std::int64_t states = 0;     ///< checked lattice states, pairs or rows
+  std::int64_t violations = 0;
+  /// Some of them; those of the built-in rules are all with the first of these. Not kept in files.
+  std::vector<LatticeState> counterexamples = {};
+
+  void add(const RuleCount& other);
+};
+
+/// Actions of one context, [SoC][price].
+using ActionGrid = std::vector<std::int8_t>;
+
+/// Counts one context after another. One checker per thread.
+class RuleChecker {
+ public:
+  /// Keeps a reference: `rules` must outlive it.
+  RuleChecker(const RuleSet& rules, ContextKind kind);
+
+  /// Neighbouring contexts, by input, whose grids check() needs: the next minute, quarter-hour or
+  /// class.
+  [[nodiscard]] const std::vector<RuleInput>& neighbours_needed() const { return neighbours_; }
+
+  /// `neighbour`: grid of each needed input, in order; empty if there is none.
+  void check(const LatticeState& context, const ActionGrid& grid,
+             const std::vector<ActionGrid>& neighbours);
+
+  [[nodiscard]] const std::vector<RuleCount>& counts() const { return counts_; }
+
+ private:
+  void check_row(std::size_t rule, int soc, const ActionGrid& grid,
+                 const std::vector<ActionGrid>& neighbours);
+  /// The row that a direction compares with this one; null if there is none.
+  [[nodiscard]] const std::int8_t* next_row(RuleInput input, int soc, const ActionGrid& grid,
+                                            const std::vector<ActionGrid>& neighbours) const;
+  void keep(std::size_t rule, int soc, int price);
+
+  const RuleSet& rules_;
+  ContextKind kind_;
+  std::vector<LatticeBox> boxes_;  ///< of each rule that binds the student
+  std::vector<RuleInput> neighbours_;
+  std::vector<RuleCount> counts_;
+  LatticeState context_{};
+  std::vector<std::size_t> holding_;  ///< rules that apply in this context
+  std::vector<int> broken_;           ///< prices of the current row
+  std::vector<int> kept_;             ///< counterexamples of this context by rule
+};
+
+/// The context after this one along an input; none after its last value.
+std::optional<LatticeState> next_context(LatticeState context, RuleInput input);
+
+/// The violated state with the largest lead, in logits, of the student's action over the best
+/// allowed one, among the counterexamples and the corners of the box (the worst states of a
+/// monotone student). None for demands other than actions.
+struct WorstState {
+  LatticeState state;
+  Action action;
+  std::int64_t lead;  ///< in units of the student's logits
+};
+std::optional<WorstState> worst_state(const StudentNet& net, const Rule& rule,
+                                      const RuleCount& count);
 
 struct Certificate {
   PriceThresholds thresholds = {};    ///< of properties 1 and 2

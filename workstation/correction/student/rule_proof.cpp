@@ -1,4 +1,4 @@
-#include "workstation/correction/student/rule_proof.h"
+#include "workstation/correction/student/certificate.h"
 
 #include <algorithm>
 #include <limits>

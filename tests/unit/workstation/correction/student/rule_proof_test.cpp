@@ -1,6 +1,6 @@
 // Proof of an operator's rules: each predicate against brute force from its definition, on nets
 // that satisfy it and on nets that violate only it.
-#include "workstation/correction/student/rule_proof.h"
+#include "workstation/correction/student/certificate.h"
 
 #include <gtest/gtest.h>
 
