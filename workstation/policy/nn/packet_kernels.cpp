@@ -15,7 +15,7 @@
 #include <limits>
 #include <type_traits>
 
-#include "workstation/policy/nn/tile_kernels.h"
+#include "workstation/policy/nn/packed_mlp.h"
 
 namespace bess {
 namespace {

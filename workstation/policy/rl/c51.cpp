@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "workstation/policy/nn/tile_kernels.h"
+#include "workstation/policy/nn/packed_mlp.h"
 
 namespace bess {
 

@@ -1,6 +1,5 @@
 // Packet kernels against products in double, over shapes that are not whole panels, blocks or
 // packets.
-#include "workstation/policy/nn/tile_kernels.h"
 
 #include "tests/unit/workstation/policy/nn/reference_net.h"
 #include "workstation/policy/nn/packed_mlp.h"
