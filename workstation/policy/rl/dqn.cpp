@@ -1,4 +1,4 @@
-#include "workstation/policy/rl/dqn.h"
+#include "workstation/policy/rl/c51.h"
 
 namespace bess {
 

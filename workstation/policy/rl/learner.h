@@ -10,7 +10,6 @@
 #include "workstation/policy/nn/adam.h"
 #include "workstation/policy/nn/thread_team.h"
 #include "workstation/policy/rl/c51.h"
-#include "workstation/policy/rl/dqn.h"
 #include "workstation/policy/rl/teacher.h"
 
 namespace bess {

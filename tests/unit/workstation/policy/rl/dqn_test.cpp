@@ -1,4 +1,4 @@
-#include "workstation/policy/rl/dqn.h"
+#include "workstation/policy/rl/c51.h"
 
 #include "tests/unit/workstation/policy/nn/reference_net.h"
 #include "workstation/policy/rl/learner.h"
