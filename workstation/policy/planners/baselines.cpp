@@ -8,7 +8,6 @@
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/data/env/evaluate.h"
-#include "workstation/policy/planners/cycle_limit.h"
 #include "workstation/policy/planners/foresight.h"
 #include "workstation/policy/planners/outlook_program.h"
 #include "workstation/policy/planners/rolling_horizon.h"

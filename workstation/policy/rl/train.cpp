@@ -10,7 +10,7 @@
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/base/progress.h"
-#include "workstation/policy/planners/cycle_limit.h"
+#include "workstation/policy/planners/foresight.h"
 #include "workstation/policy/rl/learner.h"
 
 namespace bess {
