@@ -10,7 +10,6 @@
 #include "workstation/data/env/evaluate.h"
 #include "workstation/policy/planners/foresight.h"
 #include "workstation/policy/planners/outlook_program.h"
-#include "workstation/policy/planners/rolling_horizon.h"
 #include "workstation/policy/planners/soc_grid.h"
 #include "workstation/policy/planners/stochastic_program.h"
 

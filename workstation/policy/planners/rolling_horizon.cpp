@@ -1,4 +1,4 @@
-#include "workstation/policy/planners/rolling_horizon.h"
+#include "workstation/policy/planners/baselines.h"
 
 #include <algorithm>
 #include <cmath>
