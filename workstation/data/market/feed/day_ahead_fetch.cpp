@@ -7,7 +7,7 @@
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
-#include "workstation/data/market/feed/elia_window.h"
+#include "workstation/data/market/feed/elia_fetch.h"
 #include "workstation/data/market/series/day_ahead.h"
 
 namespace bess {

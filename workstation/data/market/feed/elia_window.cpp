@@ -1,4 +1,4 @@
-#include "workstation/data/market/feed/elia_window.h"
+#include "workstation/data/market/feed/elia_fetch.h"
 
 #include <fmt/core.h>
 
