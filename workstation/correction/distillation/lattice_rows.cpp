@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "shared/nn/student_net.h"
-#include "workstation/correction/distillation/rule_rows.h"
+#include "workstation/correction/distillation/constraint_layer.h"
 #include "workstation/correction/rules/properties.h"
 
 namespace bess {

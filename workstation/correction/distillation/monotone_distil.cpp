@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "workstation/base/progress.h"
-#include "workstation/correction/distillation/rule_rows.h"
+#include "workstation/correction/distillation/constraint_layer.h"
 #include "workstation/correction/rules/properties.h"
 
 namespace bess {

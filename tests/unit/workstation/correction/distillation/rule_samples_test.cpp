@@ -8,7 +8,7 @@
 
 #include "tests/support/rule_sets.h"
 #include "tests/support/student_nets.h"
-#include "workstation/correction/distillation/rule_rows.h"
+#include "workstation/correction/distillation/constraint_layer.h"
 #include "workstation/correction/student/verify.h"
 
 namespace bess {
