@@ -16,7 +16,7 @@
 #include "workstation/correction/distillation/constraint_layer.h"
 #include "workstation/correction/distillation/correction_layer.h"
 #include "workstation/correction/rules/rule.h"
-#include "workstation/policy/nn/adam.h"
+#include "workstation/policy/nn/mlp.h"
 #include "workstation/policy/nn/thread_team.h"
 #include "workstation/policy/rl/teacher.h"
 

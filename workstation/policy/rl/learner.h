@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "workstation/base/binary_file.h"
-#include "workstation/policy/nn/adam.h"
+#include "workstation/policy/nn/mlp.h"
 #include "workstation/policy/nn/thread_team.h"
 #include "workstation/policy/rl/c51.h"
 #include "workstation/policy/rl/teacher.h"

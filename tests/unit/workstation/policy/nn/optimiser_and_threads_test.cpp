@@ -2,7 +2,7 @@
 
 #include <atomic>
 
-#include "workstation/policy/nn/adam.h"
+#include "workstation/policy/nn/mlp.h"
 #include "workstation/policy/nn/thread_team.h"
 
 namespace bess {
