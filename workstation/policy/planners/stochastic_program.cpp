@@ -243,11 +243,7 @@ std::array<double, kActionCount> StochasticProgram::action_values(const MarketSt
   return worth;
 }
 
-double StochasticProgram::expected_price(const MarketState& at) const {
-  return outlook(at).price_eur_per_mwh;
-}
-
-void StochasticProgram::continuation(const MarketState& at, float* value_eur) const {
+double StochasticProgram::continuation(const MarketState& at, float* value_eur) const {
   const Outlook sees = outlook(at);
   for (int p = 0; p < kSocPoints; ++p) {
     double ahead = 0;
@@ -256,6 +252,7 @@ void StochasticProgram::continuation(const MarketState& at, float* value_eur) co
     }
     value_eur[p] = static_cast<float>(ahead);
   }
+  return sees.price_eur_per_mwh;
 }
 
 }  // namespace bess

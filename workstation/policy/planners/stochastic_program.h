@@ -98,10 +98,9 @@ class StochasticProgram {
   /// charge].
   [[nodiscard]] std::array<double, kActionCount> action_values(const MarketState& at,
                                                                double soc_frac) const;
-  /// Parts of action_values(): expected price of the step, and discounted value of the SoC grid's
-  /// points [kSocPoints] after it, EUR.
-  [[nodiscard]] double expected_price(const MarketState& at) const;
-  void continuation(const MarketState& at, float* value_eur) const;
+  /// Writes the discounted value of the SoC grid's points [kSocPoints] after the step, EUR; returns
+  /// its expected price. action_values() consists of the two.
+  double continuation(const MarketState& at, float* value_eur) const;
   [[nodiscard]] double gamma() const { return gamma_; }
   [[nodiscard]] double mean_level_eur_per_mwh() const { return level_mean_; }
   [[nodiscard]] const BatteryParameters& battery() const { return battery_; }

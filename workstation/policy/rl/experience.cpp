@@ -17,10 +17,9 @@ TrainingMarket::TrainingMarket(const MarketSteps& market, const PriceMap& price_
                                const BatteryParameters& battery, Horizon horizon,
                                const RewardShaping& shaping, const ContextClasses& context)
     : battery_(shaping.program ? shaping.program.battery() : battery), price_map_(price_map) {
-  if (shaping.program) program_.emplace(shaping.program);
   const std::vector<MarketDay> training = market.days_of(Split::kTrain);
   require_training_days(training.size());
-  if (program_ && program_->is_outlook()) program_->plan(market, training, shaping.threads);
+  if (shaping.program) program_.emplace(shaping.program, market, training, shaping.threads);
   const TradingCosts& costs = battery_.costs;
   for (std::size_t d = 0; d < training.size(); ++d) {
     const std::size_t first = steps_.size();
@@ -42,8 +41,8 @@ TrainingMarket::TrainingMarket(const MarketSteps& market, const PriceMap& price_
                 terminal,
                 steps[i].quarter_hour};
       if (program_) {
-        step.row = program_->add(steps[i]);
-        step.next_row = program_->add(follows ? *next : steps[i]);
+        step.row = program_->row_of(steps[i]);
+        step.next_row = program_->row_of(follows ? *next : steps[i]);
         step.begins_anew = program_->is_outlook() ? program_->begins_plan(step.next_row) : last;
         step.follows_last = !steps_.empty() && steps_.back().next_row == step.row;
       }

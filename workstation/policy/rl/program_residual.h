@@ -51,13 +51,12 @@ struct BasePrograms {
 /// outlook also the break-even price, which the network gets instead of a class.
 class ProgramRows {
  public:
-  explicit ProgramRows(BasePrograms base_programs);
+  /// For all steps of these days, which are in order of time.
+  ProgramRows(BasePrograms base_programs, const MarketSteps& market,
+              const std::vector<MarketDay>& days, int threads);
 
-  /// With the outlook, before any step is added: makes the plans of all later steps.
-  void plan(const MarketSteps& market, const std::vector<MarketDay>& days, int threads);
-  /// Row of this step. Call in order of time: a step's successor is usually the next call and
-  /// shares its row.
-  std::uint32_t add(const MarketStep& step);
+  /// Row of a step of these days.
+  [[nodiscard]] std::uint32_t row_of(const MarketStep& step) const;
 
   struct Values {
     std::array<float, kActionCount> action;  ///< Q_P, discharge first
@@ -72,7 +71,8 @@ class ProgramRows {
   [[nodiscard]] bool begins_plan(std::uint32_t row) const { return begins_plan_[row] != 0; }
 
  private:
-  void plan_day(std::span<const MarketStep> steps, std::size_t row);
+  void fill_day(std::span<const MarketStep> steps, std::size_t row);
+  void fill_break_even(const MarketStep& step, std::size_t row);
 
   BasePrograms base_programs_;
   SocGrid grid_, break_even_grid_;
