@@ -129,15 +129,24 @@ std::array<double, kQuarterHourCount> MeanByQuarterHour::smoothed(double sigma) 
   return mean;
 }
 
-std::vector<double> levels_around(double mean, double mean_square, int count) {
+PriceLevels fit_levels(const MarketSteps& market, const std::vector<MarketDay>& days,
+                       int level_count) {
   constexpr double kReach = 3;  ///< standard deviations
+  double sum = 0, squares = 0, count = 0;
+  for_each_step(market, days, [&](const MarketStep& step) {
+    sum += step.level_eur_per_mwh();
+    squares += step.level_eur_per_mwh() * step.level_eur_per_mwh();
+    count += 1;
+  });
+  const double mean = sum / count;
+  const double mean_square = squares / count;
   const double deviation = std::sqrt(std::max(0.0, mean_square - mean * mean));
   std::vector<double> levels;
-  const int last = count - 1;
+  const int last = level_count - 1;
   for (int i = 0; i <= last; ++i) {
     levels.push_back(mean + (2.0 * i / last - 1) * kReach * std::max(1.0, deviation));
   }
-  return levels;
+  return {mean, std::move(levels)};
 }
 
 DeviationChain::BinPosition between_levels(const std::vector<double>& levels, double level) {

@@ -8,6 +8,7 @@
 
 #include "shared/units_and_limits.h"
 #include "workstation/base/binary_file.h"
+#include "workstation/data/env/market_steps.h"
 
 namespace bess {
 
@@ -82,11 +83,14 @@ struct MeanByQuarterHour {
 
 // Price levels with values, and the present level between them.
 
+struct PriceLevels {
+  double mean;                 ///< of the fitted steps
+  std::vector<double> levels;  ///< evenly spaced within three standard deviations of it
+};
 inline constexpr int kLevelCount = 5;
-
-/// `count` of them, evenly spaced within three standard deviations of the mean. (As a constant of
-/// that function, the count would let the compiler round the last bit otherwise.)
-std::vector<double> levels_around(double mean, double mean_square, int count);
+/// (As a constant of this function, the count would let the compiler round the last bit otherwise.)
+PriceLevels fit_levels(const MarketSteps& market, const std::vector<MarketDay>& days,
+                       int level_count);
 
 DeviationChain::BinPosition between_levels(const std::vector<double>& levels, double level);
 

@@ -74,7 +74,7 @@ OutlookProgram::OutlookProgram(const MarketSteps& market, const std::vector<Mark
   fit_means(market, days);
   fit_lasting(market, days);
   fit_coefficients(market, days);
-  fit_levels(market, days);
+  levels_ = fit_levels(market, days, kLevelCount).levels;
   fit_chain(market, days);
   solve_usual_days();
 }
@@ -185,16 +185,6 @@ void OutlookProgram::fit_coefficients(const MarketSteps& market,
   coefficients_.day_ahead = fitted[1];
   coefficients_.hour = fitted[2];
   coefficients_.level = fitted[3];
-}
-
-void OutlookProgram::fit_levels(const MarketSteps& market, const std::vector<MarketDay>& days) {
-  double sum = 0, squares = 0, count = 0;
-  for_each_step(market, days, [&](const MarketStep& step) {
-    sum += step.level_eur_per_mwh();
-    squares += step.level_eur_per_mwh() * step.level_eur_per_mwh();
-    count += 1;
-  });
-  levels_ = levels_around(sum / count, squares / count, kLevelCount);
 }
 
 void OutlookProgram::fit_chain(const MarketSteps& market, const std::vector<MarketDay>& days) {

@@ -112,7 +112,6 @@ class OutlookProgram {
   void fit_means(const MarketSteps& market, const std::vector<MarketDay>& days);
   void fit_lasting(const MarketSteps& market, const std::vector<MarketDay>& days);
   void fit_coefficients(const MarketSteps& market, const std::vector<MarketDay>& days);
-  void fit_levels(const MarketSteps& market, const std::vector<MarketDay>& days);
   void fit_chain(const MarketSteps& market, const std::vector<MarketDay>& days);
   void solve_usual_days();
   [[nodiscard]] double height_before(const MarketStep& step) const;

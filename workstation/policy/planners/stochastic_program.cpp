@@ -159,20 +159,17 @@ double StochasticProgram::usual_paid(int step, double level) const {
 void StochasticProgram::fit_usual(const MarketSteps& market, const std::vector<MarketDay>& days) {
   MeanByQuarterHour paid;
   std::array<std::array<int, 2>, kMinutesPerQuarterHour> age_count{};
-  double level_sum = 0, level_squares = 0, all = 0;
   for_each_step(market, days, [&](const MarketStep& step) {
     ++age_count[step.minute_of_quarter_hour][step.quarter_hours_ago() > 0 ? 1 : 0];
     paid.add(step.quarter_hour, step.paid_eur_per_mwh);
-    level_sum += step.level_eur_per_mwh();
-    level_squares += step.level_eur_per_mwh() * step.level_eur_per_mwh();
-    all += 1;
   });
-  level_mean_ = level_sum / all;
   for (int minute = 0; minute < kMinutesPerQuarterHour; ++minute) {
     row_age_[minute] = age_count[minute][1] > age_count[minute][0] ? 1 : 0;
   }
   usual_ = paid.smoothed(kHourSmoothing);
-  levels_ = levels_around(level_mean_, level_squares / all, kLevelCount);
+  PriceLevels fitted = fit_levels(market, days, kLevelCount);
+  level_mean_ = fitted.mean;
+  levels_ = std::move(fitted.levels);
 }
 
 void StochasticProgram::fit_chain(const MarketSteps& market, const std::vector<MarketDay>& days) {
