@@ -22,6 +22,12 @@ namespace {
 
 constexpr std::int64_t kHour_s = 3'600;
 
+/// A line or part of one, with its number.
+struct TextLine {
+  std::size_t number;
+  std::string_view text;
+};
+
 /// "1/6/2025 9:15" with "dd/mm/yyyy" as "2025-06-01 09:15"; empty if it does not match.
 std::string iso_text(std::string_view text, std::string_view format) {
   int year = 0, month = 0, day = 0;
@@ -109,8 +115,8 @@ void part_hours(std::vector<Instant>& instants, const std::vector<TextLine>& tex
   }
 }
 
-}  // namespace
-
+/// UTC instants, one for each text. In a repeated local hour (autumn) the order of the rows
+/// decides. Throws UserError.
 std::vector<std::int64_t> read_times(const std::vector<TextLine>& texts, std::string_view name,
                                      const CustomTimeFormat& form) {
   std::vector<Instant> instants;
@@ -121,6 +127,7 @@ std::vector<std::int64_t> read_times(const std::vector<TextLine>& texts, std::st
   return utc_s;
 }
 
+/// Seconds between prices, 60 or 900, by the majority of neighbours. Throws UserError for others.
 std::int64_t step_of_times(std::vector<std::int64_t> utc_s, std::string_view name) {
   std::ranges::sort(utc_s);
   std::map<std::int64_t, std::size_t> count_of;
@@ -136,8 +143,6 @@ std::int64_t step_of_times(std::vector<std::int64_t> utc_s, std::string_view nam
       "download those (hours are day-ahead prices: prices import --day-ahead)",
       name, static_cast<double>(step_s) / 60);
 }
-
-namespace {
 
 /// Refuses repeated members of one name, which are ambiguous.
 void require_each_once(JsonValue object, std::string_view place) {
@@ -370,19 +375,6 @@ MarketRows parse_market_csv(std::string_view text, std::string_view name,
   return rows;
 }
 
-MarketRows parse_market_text(std::string_view text, std::string_view name,
-                             const CustomCsvFormat& own) {
-  text = plain_text(text, name);
-  if (text.find_first_not_of(" \t\r\n") == text.npos)
-    fail("{}: the file is empty; download it again", name);
-  if (looks_like_xml(text)) return parse_entsoe_xml(text, name);
-  if (is_minute_csv(text)) return parse_minute_file_rows(text, name);
-  if (is_spreadsheet_minute_csv(text)) {
-    return parse_minute_file_rows(from_spreadsheet(text), name);
-  }
-  return looks_like_json(text) ? parse_market_json(text, name) : parse_market_csv(text, name, own);
-}
-
 namespace {
 
 /// Sources named in the comments at the head, in the words of attribution_of() and the commands.
@@ -421,8 +413,7 @@ void add_settled(const MinuteSeries& series, std::size_t minute, std::string_vie
   }
 }
 
-}  // namespace
-
+/// Whether a spreadsheet saved a minute file with semicolons.
 bool is_spreadsheet_minute_csv(std::string_view text) {
   std::string header(csv_header(text));
   if (header.find(';') == header.npos) return false;
@@ -430,6 +421,7 @@ bool is_spreadsheet_minute_csv(std::string_view text) {
   return is_minute_csv(header);
 }
 
+/// That file with commas and decimal points, row by row.
 std::string from_spreadsheet(std::string_view text) {
   std::string converted;
   for (std::string_view rest = without_byte_order_mark(text); !rest.empty();) {
@@ -443,6 +435,8 @@ std::string from_spreadsheet(std::string_view text) {
   return converted;
 }
 
+/// Indicative prices as minutes, settled ones as quarter-hours; the sources are those named in its
+/// comments.
 MarketRows parse_minute_file_rows(std::string_view text, std::string_view name) {
   const MinuteSeries series = parse_minute_csv(text, name);
   MarketRows rows;
@@ -456,8 +450,6 @@ MarketRows parse_minute_file_rows(std::string_view text, std::string_view name) 
   }
   return rows;
 }
-
-namespace {
 
 /// Not an overload: in jointly compiled files {kElia} would select this one.
 const char* words_for(MarketSource source) {
@@ -477,6 +469,19 @@ const char* words_for(MarketSource source) {
 }
 
 }  // namespace
+
+MarketRows parse_market_text(std::string_view text, std::string_view name,
+                             const CustomCsvFormat& own) {
+  text = plain_text(text, name);
+  if (text.find_first_not_of(" \t\r\n") == text.npos)
+    fail("{}: the file is empty; download it again", name);
+  if (looks_like_xml(text)) return parse_entsoe_xml(text, name);
+  if (is_minute_csv(text)) return parse_minute_file_rows(text, name);
+  if (is_spreadsheet_minute_csv(text)) {
+    return parse_minute_file_rows(from_spreadsheet(text), name);
+  }
+  return looks_like_json(text) ? parse_market_json(text, name) : parse_market_csv(text, name, own);
+}
 
 MarketRows read_market_files(const std::vector<std::string>& paths, const CustomCsvFormat& own) {
   MarketRows all;

@@ -23,20 +23,6 @@ struct CustomTimeFormat {
   std::optional<WallClock> clock{};  ///< for times without an offset
 };
 
-/// A line or part of one, with its number.
-struct TextLine {
-  std::size_t number;
-  std::string_view text;
-};
-
-/// UTC instants, one for each text. In a repeated local hour (autumn) the order of the rows
-/// decides. Throws UserError.
-std::vector<std::int64_t> read_times(const std::vector<TextLine>& texts, std::string_view name,
-                                     const CustomTimeFormat& form);
-
-/// Seconds between prices, 60 or 900, by the majority of neighbours. Throws UserError for others.
-std::int64_t step_of_times(std::vector<std::int64_t> utc_s, std::string_view name);
-
 // JSON downloads: the API's records (`results`), exports (a bare array) and version 1
 // (`records[].fields`).
 
@@ -66,21 +52,11 @@ MarketRows parse_market_csv(std::string_view text, std::string_view name,
 
 // Prices in any supported form, detected by content.
 
-/// Elia's CSV or JSON, custom CSV, ENTSO-E's XML, minute files and recorded days. `name` is used in
+/// Elia's CSV or JSON, custom CSV, ENTSO-E's XML, minute files (to join an earlier import with more
+/// rows, or to reconstruct minutes from its settled prices) and recorded days. `name` is used in
 /// messages.
 MarketRows parse_market_text(std::string_view text, std::string_view name,
                              const CustomCsvFormat& own = {});
-
-// Minute files as rows, to join an earlier import with more rows or to reconstruct minutes from its
-// settled prices.
-
-/// Indicative prices as minutes, settled ones as quarter-hours; the sources are those named in its
-/// comments.
-MarketRows parse_minute_file_rows(std::string_view text, std::string_view name);
-/// Whether a spreadsheet saved a minute file with semicolons, and that file with commas and decimal
-/// points, row by row.
-bool is_spreadsheet_minute_csv(std::string_view text);
-std::string from_spreadsheet(std::string_view text);
 
 /// Rows of all files in order; `own` is the format of custom CSV.
 MarketRows read_market_files(const std::vector<std::string>& paths,
