@@ -105,7 +105,6 @@ std::optional<FetchedPrices> fetch_prices(const FetchRequest& request,
 struct WindowRows {
   MarketRows rows;
   std::size_t received = 0;          ///< rows before any was dropped
-  bool is_elsewhere = false;         ///< rows received, none of the window
   std::size_t unended = 0;           ///< dropped: interval not ended
   std::optional<std::size_t> total;  ///< the server's count, if requested and plausible
   std::size_t distinct = 0;          ///< times with a row, if the total was requested

@@ -193,7 +193,7 @@ class Pager {
         interrupted_(interrupted),
         download_(download),
         times_(times_of(window, download.rows.rows)) {
-    count();
+    download_.rows.distinct = times_.size();
   }
 
   /// False if interrupted.
@@ -225,27 +225,23 @@ class Pager {
 
   bool ask(const FetchWindow& part) {
     ++pages_;
-    std::optional<WindowDownload> page = get_page(request_, part, interrupted_);
+    const std::optional<WindowDownload> page = get_page(request_, part, interrupted_);
     if (!page) return false;
-    take(part, *page);
-    return true;
-  }
-
-  void take(const FetchWindow& part, const WindowDownload& page) {
     WindowRows& rows = download_.rows;
-    append_rows(rows.rows, page.rows.rows);
-    times_.merge(times_of(window_, page.rows.rows));
-    count();
-    rows.received += page.rows.received;
-    rows.unended += page.rows.unended;
-    const std::string_view more = rows_behind_header(page.text, download_.text);
-    if (more.empty() && count_of(page.rows.rows) > 0) {
+    append_rows(rows.rows, page->rows.rows);
+    times_.merge(times_of(window_, page->rows.rows));
+    rows.distinct = times_.size();
+    rows.received += page->rows.received;
+    rows.unended += page->rows.unended;
+    const std::string_view more = rows_behind_header(page->text, download_.text);
+    if (more.empty() && count_of(page->rows.rows) > 0) {
       download_.text.clear();
     } else if (!download_.text.empty()) {
       if (!download_.text.ends_with('\n')) download_.text += '\n';
       download_.text.append(more);
     }
-    add_around({part.from_utc_s, part.until_utc_s}, page.rows.rows);
+    add_around({part.from_utc_s, part.until_utc_s}, page->rows.rows);
+    return true;
   }
 
   /// Adds the parts before the first and after the last row received, where a server that truncates
@@ -263,8 +259,6 @@ class Pager {
     const std::int64_t after_s = *times.rbegin() + step_of(window_);
     if (after_s < stretch.until_utc_s) open_.push_back({after_s, stretch.until_utc_s});
   }
-
-  void count() { download_.rows.distinct = times_.size(); }
 
   const FetchRequest& request_;
   const FetchWindow& window_;
@@ -290,7 +284,6 @@ WindowRows rows_in_window(std::string_view text, const std::string& name, const 
   drop_rows(result.rows, [&window](std::int64_t from_utc_s, std::int64_t) {
     return from_utc_s < window.from_utc_s || from_utc_s >= window.until_utc_s;
   });
-  result.is_elsewhere = result.received > 0 && count_of(result.rows) == 0;
   const std::size_t inside = count_of(result.rows);
   drop_rows(result.rows, [now_utc_s](std::int64_t, std::int64_t until_utc_s) {
     return until_utc_s > now_utc_s;
@@ -319,7 +312,8 @@ std::optional<WindowDownload> download_window(const FetchRequest& request,
                                               const std::atomic<bool>& interrupted) {
   std::optional<WindowDownload> download = get_page(request, window, interrupted);
   if (!download) return std::nullopt;
-  if (download->rows.is_elsewhere) {  // a retry would return the same rows
+  const bool has_some = count_of(download->rows.rows) + download->rows.unended > 0;
+  if (download->rows.received > 0 && !has_some) {  // a retry would return the same rows
     fail("the server ignored the time window: {} received, none inside it: {}",
          counted(download->rows.received, "row"), describe_window(request, window));
   }
