@@ -176,37 +176,43 @@ double imbalance_sign_flip_rate(const std::vector<QuarterHour>& quarter_hours) {
   return count.pairs > 0 ? count.rate() : kNotPublished;
 }
 
-MarketStatistics statistics_of_minutes(const MinuteSeries& series) {
+namespace {
+
+/// The part that minutes and quarter-hours share; `settled` as for regime_statistics().
+MarketStatistics statistics_of(std::int64_t from_utc_s, std::int64_t until_utc_s,
+                               std::span<const double> settled) {
   MarketStatistics result;
-  result.from_utc_s = series.start_utc_s;
-  result.until_utc_s = series.utc_s(series.size());
-  const std::vector<double> settled = settled_by_quarter_hour(series);
+  result.from_utc_s = from_utc_s;
+  result.until_utc_s = until_utc_s;
   result.price = price_statistics(settled);
-  result.regimes = regime_statistics(settled, result.from_utc_s);
+  result.regimes = regime_statistics(settled, from_utc_s);
+  result.clock_changes = clock_changes_between(from_utc_s, until_utc_s);
+  return result;
+}
+
+}  // namespace
+
+MarketStatistics statistics_of_minutes(const MinuteSeries& series) {
+  MarketStatistics result = statistics_of(series.start_utc_s, series.utc_s(series.size()),
+                                          settled_by_quarter_hour(series));
   result.convergence = convergence_by_minute(series);
   result.settled_gaps = gaps_in(series.settled, series.start_utc_s, 60);
   result.indicative_gaps = gaps_in(series.indicative, series.start_utc_s, 60);
-  result.clock_changes = clock_changes_between(result.from_utc_s, result.until_utc_s);
   return result;
 }
 
 MarketStatistics statistics_of_quarter_hours(const std::vector<QuarterHour>& quarter_hours) {
-  MarketStatistics result;
-  result.from_utc_s = quarter_hours.front().utc_s;
-  result.until_utc_s = quarter_hours.back().utc_s + kSecondsPerQuarterHour;
-  std::vector<double> settled(
-      static_cast<std::size_t>((result.until_utc_s - result.from_utc_s) / kSecondsPerQuarterHour),
-      kNotPublished);
-  for (const QuarterHour& quarter_hour : quarter_hours) {
-    settled[static_cast<std::size_t>((quarter_hour.utc_s - result.from_utc_s) /
-                                     kSecondsPerQuarterHour)] = quarter_hour.price_eur_per_mwh;
-  }
-  result.price = price_statistics(settled);
-  result.regimes = regime_statistics(settled, result.from_utc_s);
+  const std::int64_t from_utc_s = quarter_hours.front().utc_s;
+  const auto index_of = [from_utc_s](const QuarterHour& row) {
+    return static_cast<std::size_t>((row.utc_s - from_utc_s) / kSecondsPerQuarterHour);
+  };
+  std::vector<double> settled(index_of(quarter_hours.back()) + 1, kNotPublished);
+  for (const QuarterHour& row : quarter_hours) settled[index_of(row)] = row.price_eur_per_mwh;
+  MarketStatistics result =
+      statistics_of(from_utc_s, quarter_hours.back().utc_s + kSecondsPerQuarterHour, settled);
   const double flips = imbalance_sign_flip_rate(quarter_hours);
   if (is_published(flips)) result.imbalance_sign_flip_rate = flips;
-  result.settled_gaps = gaps_in(settled, result.from_utc_s, kSecondsPerQuarterHour);
-  result.clock_changes = clock_changes_between(result.from_utc_s, result.until_utc_s);
+  result.settled_gaps = gaps_in(settled, from_utc_s, kSecondsPerQuarterHour);
   return result;
 }
 
