@@ -1,4 +1,4 @@
-#include "workstation/policy/planners/deviation_chain.h"
+#include "workstation/policy/planners/stochastic_program.h"
 
 #include <Eigen/Core>
 

@@ -10,7 +10,7 @@
 //   c     least squares on the fitted days with the L of the day's start, because the planned hours
 //         are later than the present one
 //
-// The deviation of the newest price from it follows deviation_chain.h. A plan covers now to the end
+// The deviation of the newest price from it follows DeviationChain. A plan covers now to the end
 // of tomorrow, by UTC instants, so that a day may have 92 or 100 quarter-hours; usual days follow
 // without end. It is valid until midnight or a further publication. Values are computed for a few
 // levels and interpolated, so that the present level is used; levels of later hours would be
@@ -26,7 +26,6 @@
 
 #include "shared/outlook/outlook_model.h"
 #include "workstation/data/env/policy.h"
-#include "workstation/policy/planners/deviation_chain.h"
 #include "workstation/policy/planners/soc_grid.h"
 #include "workstation/policy/planners/stochastic_program.h"
 
