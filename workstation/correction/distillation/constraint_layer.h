@@ -1,6 +1,6 @@
 // Differentiable optimisation layer [Paper, Eq. 11] for general linear constraints: maps the logits
 // of a batch of states to the nearest ones that satisfy a list of rows. On the paper's three
-// properties (lattice_rows.h) it equals the CorrectionLayer, which is faster for those alone.
+// properties (property_rows) it equals the CorrectionLayer, which is faster for those alone.
 //
 // Metric: sum (u-u')^2 + (v-v')^2 over the batch; the mean of a state's logits is unchanged. A
 // block is a set of differences connected by rows. Each block is one dense quadratic program

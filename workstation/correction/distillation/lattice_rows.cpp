@@ -1,4 +1,4 @@
-#include "workstation/correction/distillation/lattice_rows.h"
+#include "workstation/correction/distillation/distil.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include "shared/host/user_error.h"
 #include "tests/support/correction_cases.h"
 #include "tests/support/tokens.h"
-#include "workstation/correction/distillation/lattice_rows.h"
+#include "workstation/correction/distillation/distil.h"
 
 namespace bess {
 namespace {

@@ -1,5 +1,4 @@
 // Rules through the optimisation layer: rows of one lattice, and a student that learns them.
-#include "workstation/correction/distillation/lattice_rows.h"
 
 #include <gtest/gtest.h>
 
