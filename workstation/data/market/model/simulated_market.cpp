@@ -1,6 +1,7 @@
 #include "workstation/data/market/model/simulated_market.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <span>
@@ -8,10 +9,21 @@
 #include "shared/local_time.h"
 #include "shared/units_and_limits.h"
 #include "workstation/base/random.h"
+#include "workstation/data/market/model/market_parameters.h"
 
 namespace bess {
 
 namespace {
+
+// Random processes of the simulated market: three scores per quarter-hour, whose ranks select
+// ladder values. A score is an expectation from the calendar plus autoregressive noise.
+
+/// Calendar inputs of a quarter-hour, in the market's local time.
+struct MarketCalendar {
+  double hour;    ///< 0..24
+  double winter;  ///< 1 in mid January, -1 in mid July
+  bool weekend;
+};
 
 double profile_at(const HourlyProfile& profile, double hour) {
   const double position = hour - 0.5 < 0 ? hour + 23.5 : hour - 0.5;
@@ -27,8 +39,6 @@ double expected_score(const ScoreParameters& parameters, const MarketCalendar& c
          (calendar.weekend ? parameters.weekend : 0);
 }
 
-}  // namespace
-
 MarketCalendar market_calendar_of(std::int64_t utc_s) {
   const LocalMinute local = local_minute_of(utc_s);
   const std::int64_t day =
@@ -42,21 +52,27 @@ MarketCalendar market_calendar_of(std::int64_t utc_s) {
           .weekend = weekday >= 5};
 }
 
-ScoreProcess::ScoreProcess(const ScoreParameters& parameters)
-    : parameters_(parameters),
-      parts_{UnitAutoregression(parameters.autoregressions[0].correlation),
-             UnitAutoregression(parameters.autoregressions[1].correlation),
-             UnitAutoregression(parameters.autoregressions[2].correlation)} {}
+class ScoreProcess {
+ public:
+  explicit ScoreProcess(const ScoreParameters& parameters)
+      : parameters_(parameters),
+        parts_{UnitAutoregression(parameters.autoregressions[0].correlation),
+               UnitAutoregression(parameters.autoregressions[1].correlation),
+               UnitAutoregression(parameters.autoregressions[2].correlation)} {}
 
-double ScoreProcess::next(const MarketCalendar& calendar, Random& random) {
-  double noise = 0;
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
-    noise += std::sqrt(parameters_.autoregressions[i].share) * parts_[i].next(random);
+  /// Score of the next quarter-hour.
+  double next(const MarketCalendar& calendar, Random& random) {
+    double noise = 0;
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      noise += std::sqrt(parameters_.autoregressions[i].share) * parts_[i].next(random);
+    }
+    return expected_score(parameters_, calendar) + parameters_.deviation * noise;
   }
-  return expected_score(parameters_, calendar) + parameters_.deviation * noise;
-}
 
-namespace {
+ private:
+  const ScoreParameters& parameters_;
+  std::array<UnitAutoregression, 3> parts_;
+};
 
 /// Median |SI| of the 13,650 quarter-hours of ods047, 1 January to 23 May 2023; below alpha's 150
 /// MW.

@@ -3,42 +3,16 @@
 // market_parameters.h. Also its distance from the real market's statistics.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "shared/host/minute_file.h"
-#include "workstation/data/market/model/market_parameters.h"
 #include "workstation/data/market/model/minute_path.h"
 #include "workstation/data/market/series/day_ahead.h"
 #include "workstation/data/market/series/imbalance_price.h"
 #include "workstation/data/market/series/local_date.h"
 
 namespace bess {
-
-// Random processes of the simulated market: three scores per quarter-hour, whose ranks select
-// ladder values. A score is an expectation from the calendar plus autoregressive noise.
-
-/// Calendar inputs of a quarter-hour, in the market's local time.
-struct MarketCalendar {
-  double hour;    ///< 0..24
-  double winter;  ///< 1 in mid January, -1 in mid July
-  bool weekend;
-};
-
-/// Needs the market's time zone (set_market_time_zone).
-MarketCalendar market_calendar_of(std::int64_t utc_s);
-
-class ScoreProcess {
- public:
-  explicit ScoreProcess(const ScoreParameters& parameters);
-  /// Score of the next quarter-hour.
-  double next(const MarketCalendar& calendar, Random& random);
-
- private:
-  const ScoreParameters& parameters_;
-  std::array<UnitAutoregression, 3> parts_;
-};
 
 // From settled quarter-hours to the minute series by drawing a minute path for each.
 
