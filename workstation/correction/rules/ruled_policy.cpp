@@ -75,13 +75,6 @@ RulePoint rule_point_of(const MarketStep& step, double soc_frac, const ContextCl
           .context_class = classes.class_of(step.month, step.level_centi_eur_per_mwh)};
 }
 
-RuledPolicy::RuledPolicy(std::shared_ptr<Policy> policy, const RuleSet& rules,
-                         const ContextClasses& classes)
-    : policy_(std::move(policy)),
-      classes_(classes),
-      implied_(rules, classes.kind),
-      guard_rules_(rules.guard_rules()) {}
-
 Action RuledPolicy::decide(const MarketStep& step, std::size_t index, double soc_frac) const {
   const RulePoint point = rule_point_of(step, soc_frac, classes_);
   const Action wanted = policy_->decide(step, index, soc_frac);
@@ -89,16 +82,11 @@ Action RuledPolicy::decide(const MarketStep& step, std::size_t index, double soc
       std::clamp(point.price_eur_per_mwh, kLatticePriceMinEurPerMwh, kLatticePriceMaxEurPerMwh);
   const ActionSet allowed =
       implied_.at(point.quarter_hour, point.context_class, point.soc_index, price);
-  const Action action = nearest_allowed(rule_limits_at(guard_rules_, point).actions,
-                                        nearest_allowed(allowed, wanted));
+  const Action action =
+      nearest_allowed(limits_at(step, soc_frac).actions, nearest_allowed(allowed, wanted));
   ++decisions_;
   changed_ += action != wanted ? 1 : 0;
   return action;
-}
-
-double RuledPolicy::power_share_max(const MarketStep& step, double soc_frac) const {
-  const RuleLimits limits = rule_limits_at(guard_rules_, rule_point_of(step, soc_frac, classes_));
-  return limits.power_permille_max / double{kFullPowerPermille};
 }
 
 }  // namespace bess

@@ -62,17 +62,45 @@ bool can_be_projected(const Rule& rule);
 /// The rules that can be projected.
 RuleSet projected_rules(const RuleSet& rules);
 
-class RuledPolicy final : public Policy {
+/// Rule inputs of a step, as the edge determines them.
+RulePoint rule_point_of(const MarketStep& step, double soc_frac, const ContextClasses& classes);
+
+/// A policy under the rules that the guard enforces. `classes`: meaning of their context classes.
+class GuardedPolicy : public Policy {
  public:
-  /// `classes`: meaning of the rules' context classes. The rules must be consistent.
-  RuledPolicy(std::shared_ptr<Policy> policy, const RuleSet& rules, const ContextClasses& classes);
+  GuardedPolicy(std::shared_ptr<Policy> policy, const RuleSet& rules, const ContextClasses& classes)
+      : policy_(std::move(policy)), classes_(classes), guard_rules_(rules.guard_rules()) {}
 
   void begin(std::span<const MarketStep> ahead, double soc_frac) override {
     policy_->begin(ahead, soc_frac);
   }
   [[nodiscard]] Action decide(const MarketStep& step, std::size_t index,
+                              double soc_frac) const override {
+    return nearest_allowed(limits_at(step, soc_frac).actions,
+                           policy_->decide(step, index, soc_frac));
+  }
+  [[nodiscard]] double power_share_max(const MarketStep& step, double soc_frac) const override {
+    return limits_at(step, soc_frac).power_permille_max / double{kFullPowerPermille};
+  }
+
+ protected:
+  [[nodiscard]] RuleLimits limits_at(const MarketStep& step, double soc_frac) const {
+    return rule_limits_at(guard_rules_, rule_point_of(step, soc_frac, classes_));
+  }
+
+  std::shared_ptr<Policy> policy_;
+  ContextClasses classes_;
+  std::vector<GuardRule> guard_rules_;
+};
+
+class RuledPolicy final : public GuardedPolicy {
+ public:
+  /// The rules must be consistent.
+  RuledPolicy(std::shared_ptr<Policy> policy, const RuleSet& rules, const ContextClasses& classes)
+      : GuardedPolicy(std::move(policy), rules, classes), implied_(rules, classes.kind) {}
+
+  [[nodiscard]] Action decide(const MarketStep& step, std::size_t index,
                               double soc_frac) const override;
-  [[nodiscard]] double power_share_max(const MarketStep& step, double soc_frac) const override;
 
   /// Share of all decisions so far that the rules changed.
   [[nodiscard]] double changed_share() const {
@@ -80,15 +108,9 @@ class RuledPolicy final : public Policy {
   }
 
  private:
-  std::shared_ptr<Policy> policy_;
-  ContextClasses classes_;
   ImpliedRanges implied_;
-  std::vector<GuardRule> guard_rules_;
   mutable std::int64_t decisions_ = 0;
   mutable std::int64_t changed_ = 0;
 };
-
-/// Rule inputs of a step, as the edge determines them.
-RulePoint rule_point_of(const MarketStep& step, double soc_frac, const ContextClasses& classes);
 
 }  // namespace bess
