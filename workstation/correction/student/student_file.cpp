@@ -337,13 +337,12 @@ void check_net(const StudentNet& net, const std::string& name) {
 }
 
 std::optional<UtcSpan> learnt_span(const Entries& learnt_for) {
-  const auto prices = std::ranges::find(learnt_for, "prices", &Entries::value_type::first);
-  if (prices == learnt_for.end()) return {};
+  const std::string prices = value_in(learnt_for, "prices");  // empty: no match
   std::int64_t minutes = 0;
   char from[32] = {};
   std::int64_t from_utc_s = 0;
-  if (std::sscanf(prices->second.c_str(), "crc32 %*8x, %" SCNd64 " minutes from %31s", &minutes,
-                  from) != 2 ||
+  if (std::sscanf(prices.c_str(), "crc32 %*8x, %" SCNd64 " minutes from %31s", &minutes, from) !=
+          2 ||
       !parse_utc(from, from_utc_s)) {
     return {};
   }
