@@ -70,8 +70,8 @@ class RuleChecker {
   std::vector<int> kept_;             ///< counterexamples of this context by rule
 };
 
-/// The context after this one along an input; none after its last value.
-std::optional<LatticeState> next_context(LatticeState context, RuleInput input);
+/// The neighbour along an input; none after its last value.
+std::optional<LatticeState> next_state(LatticeState state, RuleInput input);
 
 /// The violated state with the largest lead, in logits, of the student's action over the best
 /// allowed one, among the counterexamples and the corners of the box (the worst states of a

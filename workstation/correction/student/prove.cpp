@@ -25,19 +25,6 @@ bool holds_at(const Rule& rule, ContextKind kind, const LatticeState& s) {
              .contains(s.soc_index, s.price_eur_per_mwh - kLatticePriceMinEurPerMwh);
 }
 
-/// The neighbour along the input; none after the last value.
-std::optional<LatticeState> next_state(LatticeState state, RuleInput input) {
-  if (input == RuleInput::kSoc) {
-    if (++state.soc_index == kSocCount) return {};
-    return state;
-  }
-  if (input == RuleInput::kPrice) {
-    if (++state.price_eur_per_mwh > kLatticePriceMaxEurPerMwh) return {};
-    return state;
-  }
-  return next_context(state, input);
-}
-
 struct Example {
   LatticeState state;
   std::string text;
@@ -187,33 +174,28 @@ static_assert(std::gcd(kSampleStride, kContextCount) == 1);
 
 namespace {
 
-/// A student by outlook owes the demand on its classes, whatever rules its file or a user names.
-void require_outlook_rule(StudentFile& student) {
-  if (!student.net.context.is_outlook()) return;
-  student.certificate.rules = with_outlook_rule(student.certificate.rules);
+/// With the certificate of a check by these options, for the student's thresholds and rules.
+StudentFile checked(StudentFile student, VerifyOptions options) {
+  check_net(student.net, "the student");
+  Certificate& certificate = student.certificate;
+  // A student by outlook owes the demand on its classes, whatever rules its file or a user names.
+  if (student.net.context.is_outlook()) certificate.rules = with_outlook_rule(certificate.rules);
+  options.thresholds = certificate.thresholds;
+  options.rules = certificate.rules;
+  certificate = verify_student(student.net, options);
+  return student;
 }
 
 }  // namespace
 
 Verdict prove(StudentFile student, int threads, bool exhaustive) {
-  check_net(student.net, "the student");
-  require_outlook_rule(student);
-  student.certificate = verify_student(student.net, {.thresholds = student.certificate.thresholds,
-                                                     .rules = student.certificate.rules,
-                                                     .exhaustive = exhaustive,
-                                                     .threads = threads});
+  student = checked(std::move(student), {.exhaustive = exhaustive, .threads = threads});
   if (!student.certificate.covers_lattice_without_violation()) return student;
   return ProvedStudent(std::move(student));
 }
 
 StudentFile sample_violations(StudentFile student, int threads) {
-  check_net(student.net, "the student");
-  require_outlook_rule(student);
-  student.certificate = verify_student(student.net, {.thresholds = student.certificate.thresholds,
-                                                     .rules = student.certificate.rules,
-                                                     .context_stride = kSampleStride,
-                                                     .threads = threads});
-  return student;
+  return checked(std::move(student), {.context_stride = kSampleStride, .threads = threads});
 }
 
 const StudentFile& student_of(const Verdict& verdict) {

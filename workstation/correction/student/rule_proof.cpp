@@ -26,22 +26,20 @@ void RuleCount::add(const RuleCount& other) {
                          other.counterexamples.end());
 }
 
-std::optional<LatticeState> next_context(LatticeState context, RuleInput input) {
-  switch (input) {
-    case RuleInput::kMinute:
-      if (++context.minute_of_quarter_hour == kMinuteOfQuarterHourCount) return {};
-      return context;
-    case RuleInput::kQuarterHour:
-      if (++context.quarter_hour == kQuarterHourCount) return {};
-      return context;
-    case RuleInput::kContextClass:
-      if (++context.context_class > kContextClassCount) return {};
-      return context;
-    case RuleInput::kSoc:
-    case RuleInput::kPrice:
-      break;
-  }
-  return {};
+std::optional<LatticeState> next_state(LatticeState state, RuleInput input) {
+  struct Field {
+    std::int16_t LatticeState::*value;
+    int last;
+  };
+  constexpr Field kFields[kRuleInputCount] = {
+      {&LatticeState::minute_of_quarter_hour, kMinuteOfQuarterHourCount - 1},
+      {&LatticeState::quarter_hour, kQuarterHourCount - 1},
+      {&LatticeState::context_class, kContextClassCount},
+      {&LatticeState::soc_index, kSocCount - 1},
+      {&LatticeState::price_eur_per_mwh, kLatticePriceMaxEurPerMwh}};
+  const Field& field = kFields[static_cast<std::size_t>(input)];
+  if (++(state.*field.value) > field.last) return {};
+  return state;
 }
 
 RuleChecker::RuleChecker(const RuleSet& rules, ContextKind kind)

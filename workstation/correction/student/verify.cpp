@@ -277,7 +277,7 @@ Certificate verify_student(const StudentNet& net, const VerifyOptions& options) 
       const LatticeState context = context_at(c * options.context_stride);
       part.states_evaluated += filler.fill(context, options.exhaustive, grid);
       for (std::size_t n = 0; n < neighbours.size(); ++n) {
-        const auto next = next_context(context, checker.neighbours_needed()[n]);
+        const auto next = next_state(context, checker.neighbours_needed()[n]);
         neighbours[n].clear();
         if (next) filler.fill(*next, options.exhaustive, neighbours[n]);
       }

@@ -22,7 +22,7 @@ class Actions {
     fill(net, context, here_);
     for (const RuleInput input :
          {RuleInput::kMinute, RuleInput::kQuarterHour, RuleInput::kContextClass}) {
-      const auto next = next_context(context, input);
+      const auto next = next_state(context, input);
       if (next) fill(net, *next, beside_[static_cast<std::size_t>(input)]);
     }
   }
