@@ -8,7 +8,7 @@
 #include "tests/support/integer_nets.h"
 #include "workstation/correction/distillation/distil.h"
 #include "workstation/correction/student/student_file.h"
-#include "workstation/policy/rl/price_map.h"
+#include "workstation/policy/rl/network_input.h"
 
 namespace bess {
 

@@ -18,7 +18,6 @@
 #include "workstation/correction/rules/rule_conflicts.h"
 #include "workstation/policy/nn/mlp.h"
 #include "workstation/policy/rl/network_input.h"
-#include "workstation/policy/rl/price_map.h"
 
 namespace bess {
 

@@ -14,7 +14,7 @@
 #include "workstation/correction/student/certificate.h"
 #include "workstation/data/env/plan_cache.h"
 #include "workstation/policy/nn/mlp.h"
-#include "workstation/policy/rl/price_map.h"
+#include "workstation/policy/rl/network_input.h"
 
 namespace bess {
 

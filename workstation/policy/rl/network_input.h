@@ -3,11 +3,39 @@
 // student has the same inputs.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <vector>
+
 #include "shared/nn/student_net.h"
+#include "shared/units_and_limits.h"
 #include "workstation/data/env/market_steps.h"
-#include "workstation/policy/rl/price_map.h"
 
 namespace bess {
+
+// Monotone price map of the network input: mean of the training days' cumulative distribution and
+// the straight line over the lattice range, for resolution where prices are frequent and a positive
+// slope everywhere. Piecewise linear over whole EUR/MWh; teacher and student use the same table,
+// the student in Q14.
+
+class PriceMap {
+ public:
+  /// Fits to observed prices of training decisions (at least one).
+  static PriceMap fit(const std::vector<double>& observed_eur_per_mwh);
+  /// Rebuilds the map from its table; throws UserError unless it increases strictly.
+  explicit PriceMap(const std::array<std::int16_t, kPriceCount>& table);
+
+  /// Network input 0..1; prices outside the lattice are clamped, those between lattice points
+  /// interpolated.
+  [[nodiscard]] float operator()(double price_eur_per_mwh) const;
+  /// Inverse: price of a network input, EUR/MWh.
+  [[nodiscard]] double price_of(float input) const;
+  /// Q14 value of each lattice price, strictly increasing.
+  [[nodiscard]] const std::array<std::int16_t, kPriceCount>& table() const { return table_; }
+
+ private:
+  std::array<std::int16_t, kPriceCount> table_;
+};
 
 inline constexpr int kNetworkInputs = kStudentInputs;
 

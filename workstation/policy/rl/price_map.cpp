@@ -1,4 +1,4 @@
-#include "workstation/policy/rl/price_map.h"
+#include "workstation/policy/rl/network_input.h"
 
 #include <algorithm>
 #include <cmath>

@@ -16,7 +16,6 @@
 #include "workstation/policy/planners/stochastic_program.h"
 #include "workstation/policy/rl/c51.h"
 #include "workstation/policy/rl/network_input.h"
-#include "workstation/policy/rl/price_map.h"
 #include "workstation/policy/rl/program_residual.h"
 
 namespace bess {

@@ -16,7 +16,7 @@
 #include "workstation/data/env/policy.h"
 #include "workstation/data/market/model/simulated_market.h"
 #include "workstation/data/market/series/local_date.h"
-#include "workstation/policy/rl/price_map.h"
+#include "workstation/policy/rl/network_input.h"
 
 namespace bess {
 

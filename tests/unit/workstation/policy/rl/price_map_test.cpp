@@ -1,4 +1,4 @@
-#include "workstation/policy/rl/price_map.h"
+#include "workstation/policy/rl/network_input.h"
 
 #include "shared/nn/student_net.h"
 #include "tests/support/tokens.h"
