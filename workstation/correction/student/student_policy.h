@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "workstation/correction/rules/ruled_policy.h"
 #include "workstation/correction/student/student_file.h"
 #include "workstation/data/env/policy.h"
 
@@ -36,6 +37,11 @@ class StudentPolicy final : public Policy {
 };
 
 /// Keeps a reference: `student` must outlive it.
-std::unique_ptr<Policy> exported_policy(const StudentFile& student);
+inline std::unique_ptr<Policy> exported_policy(const StudentFile& student) {
+  auto policy = std::make_unique<StudentPolicy>(student.net, student.outlook);
+  const RuleSet& rules = student.certificate.rules;
+  if (rules.guard_rules().empty()) return policy;
+  return std::make_unique<GuardedPolicy>(std::move(policy), rules, student.net.context);
+}
 
 }  // namespace bess
