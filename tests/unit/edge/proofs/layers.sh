@@ -70,7 +70,7 @@ only curl/ '(edge/(prices/fetch/fetch|companions/notify/mqtt_client)|shared/host
 only mosquitto.h edge/companions/notify/mqtt_client.cpp: 'edge shared workstation tools'
 only cjson/  'shared/host/json.cpp:' 'edge shared workstation tools'
 only toml++/ shared/host/toml_document.cpp: 'edge shared workstation tools'
-only pugixml '(workstation/data/market/feed/entsoe_|tools/hil_runner/run/report_page)' \
+only pugixml '(workstation/data/market/feed/entsoe.cpp:|tools/hil_runner/run/report_page)' \
   'edge shared workstation tools'
 
 # The decision parts use neither files, sockets, threads nor signals.
