@@ -288,7 +288,7 @@ void MonotoneDistiller::spread_activations() {
         static_cast<Eigen::Index>(random_.index(static_cast<std::uint64_t>(batch_.inputs.cols()))));
   }
   MutableMlp net(kStudentShape, student_.data());
-  const auto spread = [count](const Matrix& sum, auto& weight, auto& bias) {
+  const auto spread = [&](const Matrix& sum, auto& weight, auto& bias) {
     for (Eigen::Index unit = 0; unit < sum.rows(); ++unit) {
       const float mean = sum.row(unit).mean();
       const float deviation =
@@ -297,17 +297,14 @@ void MonotoneDistiller::spread_activations() {
       weight.row(unit) *= scale;
       bias[unit] = (bias[unit] - mean) * scale + 0.5F;
     }
+    for (Eigen::Index unit = 0; unit < sum.rows(); ++unit) {
+      bias[unit] += static_cast<float>(random_.normal()) * 0.5F;
+    }
   };
   forward(student_, worker);
   spread(worker.a1, net.w1, net.b1);
-  for (Eigen::Index unit = 0; unit < kStudentHidden1; ++unit) {
-    net.b1[unit] += static_cast<float>(random_.normal()) * 0.5F;
-  }
   forward(student_, worker);
   spread(worker.a2, net.w2, net.b2);
-  for (Eigen::Index unit = 0; unit < kStudentHidden2; ++unit) {
-    net.b2[unit] += static_cast<float>(random_.normal()) * 0.5F;
-  }
 }
 
 void MonotoneDistiller::forward(const Parameters& parameters, Worker& w) const {
