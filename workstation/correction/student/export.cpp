@@ -71,8 +71,7 @@ std::string guard_tables(const ProvedStudent& student, const std::vector<GuardRu
       kNameLengthMax + 1, names, checks.size(), points, limits);
 }
 
-}  // namespace
-
+/// One line per rule, after the three properties; empty without rules.
 std::string rule_lines(const Certificate& certificate) {
   std::string text;
   for (std::size_t r = 0; r < certificate.rules.rules.size(); ++r) {
@@ -84,38 +83,7 @@ std::string rule_lines(const Certificate& certificate) {
   return text;
 }
 
-std::vector<RulePoint> rule_check_points(const std::vector<GuardRule>& rules) {
-  std::vector<RulePoint> points;
-  for (const GuardRule& rule : rules) {
-    const RuleBox& b = rule.box;
-    const int last_hour = (b.quarter_hour_first + b.quarter_hour_count - 1) % kQuarterHourCount;
-    const auto at = [&](int price, int soc, int hour, int month, int context_class) {
-      points.push_back({price, static_cast<std::int16_t>(soc), static_cast<std::int16_t>(hour),
-                        static_cast<std::int16_t>(month),
-                        static_cast<std::int16_t>(context_class)});
-    };
-    const int month = lowest_member(b.months);
-    const int context_class = lowest_member(b.context_classes);
-    const int low = b.price_min_eur_per_mwh;
-    const int high = b.price_max_eur_per_mwh;
-    for (const int price : {low - 1, low, high, high + 1}) {
-      at(price, b.soc_index_min, b.quarter_hour_first, month, context_class);
-    }
-    for (const int soc : {b.soc_index_min - 1, b.soc_index_max, b.soc_index_max + 1}) {
-      at(low, soc, b.quarter_hour_first, month, context_class);
-    }
-    for (const int hour :
-         {b.quarter_hour_first + kQuarterHourCount - 1, last_hour, last_hour + 1}) {
-      at(low, b.soc_index_min, hour % kQuarterHourCount, month, context_class);
-    }
-    for (int member = 1; member <= 12; ++member) {
-      at(low, b.soc_index_min, b.quarter_hour_first, member, context_class);
-      at(low, b.soc_index_min, b.quarter_hour_first, month, member);
-    }
-  }
-  return points;
-}
-
+/// Macros and tables; empty without rules.
 std::string rule_section(const ProvedStudent& student) {
   const RuleSet& rules = student.certificate().rules;
   if (rules.empty()) return {};
@@ -125,8 +93,6 @@ std::string rule_section(const ProvedStudent& student) {
   if (!enforced.empty()) text += guard_tables(student, enforced);
   return text;
 }
-
-namespace {
 
 constexpr int kHeaderVersion = 3;
 constexpr int kRandomSelfChecks = 56;
@@ -345,6 +311,38 @@ std::string decision_signature_line(const StudentFile& student) {
   const std::uint32_t hash = hash_by_outlook(ruled_hash(student_weights_hash(student.net), rules),
                                              outlook != nullptr ? outlook->hash() : 0);
   return signature_line(hash, replay_recorded_days(guard, outlook)).c_str();
+}
+
+std::vector<RulePoint> rule_check_points(const std::vector<GuardRule>& rules) {
+  std::vector<RulePoint> points;
+  for (const GuardRule& rule : rules) {
+    const RuleBox& b = rule.box;
+    const int last_hour = (b.quarter_hour_first + b.quarter_hour_count - 1) % kQuarterHourCount;
+    const auto at = [&](int price, int soc, int hour, int month, int context_class) {
+      points.push_back({price, static_cast<std::int16_t>(soc), static_cast<std::int16_t>(hour),
+                        static_cast<std::int16_t>(month),
+                        static_cast<std::int16_t>(context_class)});
+    };
+    const int month = lowest_member(b.months);
+    const int context_class = lowest_member(b.context_classes);
+    const int low = b.price_min_eur_per_mwh;
+    const int high = b.price_max_eur_per_mwh;
+    for (const int price : {low - 1, low, high, high + 1}) {
+      at(price, b.soc_index_min, b.quarter_hour_first, month, context_class);
+    }
+    for (const int soc : {b.soc_index_min - 1, b.soc_index_max, b.soc_index_max + 1}) {
+      at(low, soc, b.quarter_hour_first, month, context_class);
+    }
+    for (const int hour :
+         {b.quarter_hour_first + kQuarterHourCount - 1, last_hour, last_hour + 1}) {
+      at(low, b.soc_index_min, hour % kQuarterHourCount, month, context_class);
+    }
+    for (int member = 1; member <= 12; ++member) {
+      at(low, b.soc_index_min, b.quarter_hour_first, member, context_class);
+      at(low, b.soc_index_min, b.quarter_hour_first, month, member);
+    }
+  }
+  return points;
 }
 
 std::string c_string_literal(const std::string& text) {

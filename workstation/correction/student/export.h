@@ -12,12 +12,6 @@ namespace bess {
 // file so that the proof is repeatable, and the guard's rules as constant tables with check points.
 // Empty without rules.
 
-/// One line per rule, after the three properties; empty without rules.
-std::string rule_lines(const Certificate& certificate);
-
-/// Macros and tables; empty without rules.
-std::string rule_section(const ProvedStudent& student);
-
 /// Points that test each field of each rule: inside its box, at its ends, and just beyond.
 std::vector<RulePoint> rule_check_points(const std::vector<GuardRule>& rules);
 

@@ -88,8 +88,6 @@ DayAheadRow tidy_row(std::string_view line, const TidyColumns& columns, const st
   return row;
 }
 
-}  // namespace
-
 std::vector<DayAheadRow> parse_tidy_day_ahead(std::string_view text, std::string_view name) {
   std::optional<TidyColumns> columns;
   std::vector<DayAheadRow> rows;
@@ -105,6 +103,8 @@ std::vector<DayAheadRow> parse_tidy_day_ahead(std::string_view text, std::string
   if (!columns) fail("{}: the file is empty; download it again", name);
   return rows;
 }
+
+}  // namespace
 
 std::vector<DayAheadRow> parse_energy_charts(std::string_view text, std::string_view name) {
   DayAheadAnswer answer = parse_day_ahead_json(text);

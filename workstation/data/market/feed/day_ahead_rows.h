@@ -30,7 +30,6 @@ DayAheadFile parse_day_ahead_text(std::string_view text, std::string_view name);
 /// the line, also for two zones.
 DayAheadFile parse_entsoe_day_ahead(std::string_view text, std::string_view name);
 std::vector<DayAheadRow> parse_energy_charts(std::string_view text, std::string_view name);
-std::vector<DayAheadRow> parse_tidy_day_ahead(std::string_view text, std::string_view name);
 
 /// Rows of several files. Throws UserError naming two files with different zones.
 std::vector<DayAheadRow> rows_of_one_zone(const std::vector<std::string>& paths,

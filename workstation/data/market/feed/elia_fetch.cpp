@@ -51,11 +51,12 @@ LocalDate window_end(const LocalDate& from, const LocalDate& end, const LocalDat
   return until;
 }
 
-}  // namespace
-
+/// Dataset that is refreshed all day; the others once a day.
 bool is_near_real_time(std::string_view dataset) {
   return dataset == kToday.minutes || dataset == kToday.quarter_hours;
 }
+
+}  // namespace
 
 bool holds_minutes(std::string_view dataset) {
   return dataset == kOld.minutes || dataset == kNew.minutes || dataset == kToday.minutes;

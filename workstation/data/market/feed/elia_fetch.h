@@ -42,9 +42,6 @@ struct FetchSpan {
   LocalDate from, to;  ///< both inclusive
 };
 
-/// Dataset that is refreshed all day; the others once a day.
-bool is_near_real_time(std::string_view dataset);
-
 /// Dataset of minutes; the others contain quarter-hours.
 bool holds_minutes(std::string_view dataset);
 
