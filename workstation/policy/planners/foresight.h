@@ -124,7 +124,7 @@ class ForesightPolicy final : public Policy {
 };
 
 // Planner with a limit on daily full cycles: fitted with the limit's shadow price as additional
-// wear (foresight.h), so that the limit is met on average over the fitted days. The evaluation
+// wear (ShadowPrice), so that the limit is met on average over the fitted days. The evaluation
 // enforces it each day.
 
 /// Battery to plan with: `battery` itself without a limit.
