@@ -166,7 +166,7 @@ void begin_at_zero(Method method, const Support& support, const MlpShape& shape,
 }
 
 Action TeacherPolicy::decide(const MarketStep& step, std::size_t, double soc_frac) const {
-  if (!teacher_.base_programs()) {
+  if (!teacher_.has_program()) {
     teacher_.write_inputs(step, soc_frac, x_.data());
     return argmax_action(teacher_.action_values(x_, tile_).data());
   }

@@ -42,7 +42,8 @@ struct Teacher {
   std::shared_ptr<const PlanCache> plan_cache = nullptr;
 
   [[nodiscard]] BasePrograms base_programs() const { return {program, outlook, plan_cache}; }
-  [[nodiscard]] bool is_residual() const { return base_programs() && method != Method::kSdp; }
+  [[nodiscard]] bool has_program() const { return program != nullptr || outlook != nullptr; }
+  [[nodiscard]] bool is_residual() const { return has_program() && method != Method::kSdp; }
   /// Action values, means of their distributions, [3 x samples] in units of 1e4 EUR/h for inputs [5
   /// x samples]. With the outlook they are no function of the inputs: three rows below the inputs
   /// contain them.
