@@ -50,11 +50,21 @@ RuleSet with_thresholds(const RuleSet& rules, const PriceThresholds& thresholds)
        b.place, state);
 }
 
-std::optional<int> common_quarter_hour(const RuleBox& a, const RuleBox& b) {
+using QuarterHours = std::bitset<kQuarterHourCount>;
+
+QuarterHours quarter_hours_of(const RuleBox& box) {
+  QuarterHours held;
   for (int q = 0; q < kQuarterHourCount; ++q) {
-    if (a.holds_at_hour(q) && b.holds_at_hour(q)) return q;
+    held[static_cast<std::size_t>(q)] = box.holds_at_hour(q);
   }
-  return {};
+  return held;
+}
+
+/// Not for an empty set.
+int first_of(const QuarterHours& held) {
+  std::size_t q = 0;
+  while (!held[q]) ++q;
+  return static_cast<int>(q);
 }
 
 /// Contradictions between rules that the guard enforces at the same time.
@@ -64,15 +74,15 @@ void check_boxes(const Rule& a, const Rule& b, ContextKind kind) {
   const int soc = std::max(a.box.soc_index_min, b.box.soc_index_min);
   const std::int32_t months = a.box.months & b.box.months;
   const std::int32_t classes = a.box.context_classes & b.box.context_classes;
-  const auto quarter_hour = common_quarter_hour(a.box, b.box);
+  const QuarterHours held = quarter_hours_of(a.box) & quarter_hours_of(b.box);
   if (price > std::min(a.box.price_max_eur_per_mwh, b.box.price_max_eur_per_mwh) ||
       soc > std::min(a.box.soc_index_max, b.box.soc_index_max) || months == 0 || classes == 0 ||
-      !quarter_hour) {
+      held.none()) {
     return;
   }
   const std::int32_t seen = kind == ContextKind::kMonth ? months : classes;
   clash(a, b,
-        state_text(*quarter_hour, std::countr_zero(static_cast<unsigned>(seen)) + 1, soc, price,
+        state_text(first_of(held), std::countr_zero(static_cast<unsigned>(seen)) + 1, soc, price,
                    kind));
 }
 
@@ -108,16 +118,14 @@ void check_each(const RuleSet& rules, ContextKind kind) {
 
 void ImpliedRanges::add_bound(const Rule& rule, std::size_t index, Side side, Action action,
                               const std::vector<Direction>& directions, ContextKind kind) {
-  ImpliedBound bound{side, action, 0, index, lattice_box_of(rule.box, kind), {}};
+  ImpliedBound bound{
+      side, action, 0, index, lattice_box_of(rule.box, kind), quarter_hours_of(rule.box)};
   for (int a = 0; a < kActionCount; ++a) {
     const auto other = static_cast<Action>(a);
     const bool is_allowed = side == Side::kAtLeast  ? other >= action
                             : side == Side::kAtMost ? other <= action
                                                     : other != action;
     if (is_allowed) bound.allowed = static_cast<ActionSet>(bound.allowed | action_bit(other));
-  }
-  for (int q = 0; q < kQuarterHourCount; ++q) {
-    bound.quarter_hours.push_back(rule.box.holds_at_hour(q));
   }
   for (const Direction& direction : directions) {
     if (side == Side::kNotIdle) break;  // implies nothing for other states
@@ -133,11 +141,12 @@ void ImpliedRanges::add_bound(const Rule& rule, std::size_t index, Side side, Ac
       reach(direction.sign, at_least, first, last, 0, kContextClassCount - 1);
       for (int c = first; c <= last; ++c) box.classes |= 1 << c;
     } else if (direction.input == RuleInput::kQuarterHour) {
-      auto& held = bound.quarter_hours;
-      auto first = static_cast<int>(std::ranges::find(held, true) - held.begin());
-      auto last = static_cast<int>(held.rend() - std::find(held.rbegin(), held.rend(), true)) - 1;
+      QuarterHours& held = bound.quarter_hours;
+      int first = first_of(held);
+      int last = kQuarterHourCount - 1;
+      while (!held[static_cast<std::size_t>(last)]) --last;
       reach(direction.sign, at_least, first, last, 0, kQuarterHourCount - 1);
-      std::fill(held.begin() + first, held.begin() + last + 1, true);
+      for (int q = first; q <= last; ++q) held.set(static_cast<std::size_t>(q));
     }
   }
   bounds_.push_back(std::move(bound));
@@ -195,25 +204,20 @@ void require_consistent(const RuleSet& rules, const PriceThresholds& thresholds,
   // boxes.
   const auto meet = [kind](std::initializer_list<const ImpliedBound*> bounds, std::string& state) {
     LatticeBox common{0, kPriceCount - 1, 0, kSocCount - 1, kAllTwelve};
+    QuarterHours held = QuarterHours().set();
     for (const ImpliedBound* bound : bounds) {
       common.price_first = std::max(common.price_first, bound->box.price_first);
       common.price_last = std::min(common.price_last, bound->box.price_last);
       common.soc_first = std::max(common.soc_first, bound->box.soc_first);
       common.soc_last = std::min(common.soc_last, bound->box.soc_last);
       common.classes &= bound->box.classes;
-    }
-    int quarter_hour = 0;
-    while (quarter_hour < kQuarterHourCount &&
-           !std::ranges::all_of(bounds, [&](const ImpliedBound* c) {
-             return bool{c->quarter_hours[static_cast<std::size_t>(quarter_hour)]};
-           })) {
-      ++quarter_hour;
+      held &= bound->quarter_hours;
     }
     if (common.price_first > common.price_last || common.soc_first > common.soc_last ||
-        common.classes == 0 || quarter_hour == kQuarterHourCount) {
+        common.classes == 0 || held.none()) {
       return false;
     }
-    state = state_text(quarter_hour, std::countr_zero(static_cast<unsigned>(common.classes)) + 1,
+    state = state_text(first_of(held), std::countr_zero(static_cast<unsigned>(common.classes)) + 1,
                        common.soc_first, kLatticePriceMinEurPerMwh + common.price_first, kind);
     return true;
   };
@@ -245,11 +249,7 @@ std::optional<Opposite> nearest_opposite(const RuleSet& rules, const PriceThresh
     return other.box == rule.box && other.actions() == rule.actions();
   };
   const auto meet_in_time = [](const ImpliedBound& a, const ImpliedBound& b) {
-    if ((a.box.classes & b.box.classes) == 0) return false;
-    for (std::size_t q = 0; q < a.quarter_hours.size(); ++q) {
-      if (a.quarter_hours[q] && b.quarter_hours[q]) return true;
-    }
-    return false;
+    return (a.box.classes & b.box.classes) != 0 && (a.quarter_hours & b.quarter_hours).any();
   };
   std::optional<Opposite> nearest;
   for (const ImpliedBound& least : implied.bounds_) {

@@ -6,6 +6,7 @@
 // Rules of the guard are compared within their own boxes.
 #pragma once
 
+#include <bitset>
 #include <optional>
 #include <string>
 
@@ -49,7 +50,7 @@ class ImpliedRanges {
     ActionSet allowed;
     std::size_t rule;  ///< index
     LatticeBox box;
-    std::vector<bool> quarter_hours;
+    std::bitset<kQuarterHourCount> quarter_hours;
   };
   void add_bound(const Rule& rule, std::size_t index, Side side, Action action,
                  const std::vector<Direction>& directions, ContextKind kind);
