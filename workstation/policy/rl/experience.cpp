@@ -85,7 +85,7 @@ NetworkContext TrainingMarket::seen(NetworkContext context, std::uint32_t row,
   return context;
 }
 
-/// r' and A(s', .) of program_residual.h.
+/// r' and A(s', .) of teacher.h.
 void TrainingMarket::shape_by_program(const Step& step, double soc_frac, double next_soc_frac,
                                       Transition& out) const {
   const ProgramRows::Values here = program_->at(step.row, soc_frac);

@@ -11,7 +11,7 @@
 #include "shared/battery_model.h"
 #include "workstation/base/random.h"
 #include "workstation/data/env/market_steps.h"
-#include "workstation/policy/rl/program_residual.h"
+#include "workstation/policy/rl/teacher.h"
 #include "workstation/policy/rl/transition.h"
 
 namespace bess {
@@ -21,7 +21,7 @@ enum class Horizon {
   kDay,         ///< terminal at local midnight (the paper's episodes)
 };
 
-/// With a program, rewards are r' of program_residual.h, centred; otherwise they are money.
+/// With a program, rewards are r' of teacher.h, centred; otherwise they are money.
 struct RewardShaping {
   BasePrograms program{};
   int threads = 1;  ///< for its plans

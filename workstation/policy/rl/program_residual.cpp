@@ -1,4 +1,4 @@
-#include "workstation/policy/rl/program_residual.h"
+#include "workstation/policy/rl/teacher.h"
 
 #include <algorithm>
 #include <cmath>

@@ -90,7 +90,7 @@ struct TrainOptions {
   double learning_rate = 1e-3;  ///< of Adam; cosine decay to `learning_rate_end`
   double learning_rate_end = 5e-5;
   double gamma = 0.999;
-  bool residual = true;          ///< a network adds to the stochastic program (program_residual.h)
+  bool residual = true;          ///< a network adds to the stochastic program (teacher.h)
   double residual_gamma = 0.98;  ///< its discount per step, instead of gamma
   double tau = 0.05;             ///< target <- tau * online + (1 - tau) * target, each step
   int atoms = 51;

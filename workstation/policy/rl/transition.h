@@ -29,7 +29,7 @@ struct alignas(64) Transition {
   float reward;         ///< -p * price, scaled
   std::int32_t action;  ///< Action
   std::int32_t terminal;
-  /// A_program(s', a') of each next action for a residual (program_residual.h), else 0; the
+  /// A_program(s', a') of each next action for a residual (teacher.h), else 0; the
   /// network's own value is added to it.
   float next_advantage[kActionCount];
 };

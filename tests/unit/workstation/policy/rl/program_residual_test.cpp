@@ -1,5 +1,5 @@
 // Residual on the stochastic program: it starts as the program, and learns the program's error.
-#include "workstation/policy/rl/program_residual.h"
+#include "workstation/policy/rl/teacher.h"
 
 #include <memory>
 #include <numeric>
