@@ -11,8 +11,8 @@
 #include "tests/bench/simulated_year.h"
 #include "tests/bench/torch_peer.h"
 #include "workstation/base/random.h"
-#include "workstation/policy/rl/experience.h"
 #include "workstation/policy/rl/learner.h"
+#include "workstation/policy/rl/train.h"
 
 namespace bess {
 namespace {

@@ -1,4 +1,4 @@
-#include "workstation/policy/rl/experience.h"
+#include "workstation/policy/rl/train.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #include "shared/battery_keys.h"
 #include "tests/support/small_market.h"
 #include "workstation/policy/planners/baselines.h"
-#include "workstation/policy/rl/experience.h"
+#include "workstation/policy/rl/train.h"
 
 namespace bess {
 namespace {

@@ -1,6 +1,6 @@
-#include "workstation/policy/rl/experience.h"
 #include "shared/battery_model.h"
 #include "workstation/policy/planners/stochastic_program.h"
+#include "workstation/policy/rl/train.h"
 
 #include <set>
 
