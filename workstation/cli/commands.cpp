@@ -37,52 +37,6 @@ void add_schema_command(ProgramCommand& app) {
   command.runs([] { fmt::print("{}", page_file("answers.schema.json")); });
 }
 
-// bess-train log: analysis of a controller's log.
-
-void add_log_commands(ProgramCommand& app) {
-  ProgramCommand log =
-      app.subcommand("log", "analyse a controller's log: compare, replay, statement");
-  log.requires_subcommand();
-  add_log_compare(log);
-  add_log_replay(log);
-  add_log_statement(log);
-}
-
-// bess-train prices: sources of minute files.
-
-void add_prices_commands(ProgramCommand& app) {
-  ProgramCommand prices =
-      app.subcommand("prices", "price files: fetch, import, reconstruct, simulate, stats");
-  prices.requires_subcommand();
-  add_prices_simulate(prices);
-  add_prices_reconstruct(prices);
-  add_prices_import(prices);
-  add_prices_fetch(prices);
-  add_prices_stats(prices);
-}
-
-// bess-train rules: operator rules before training.
-
-void add_rules_commands(ProgramCommand& app) {
-  ProgramCommand rules = app.subcommand("rules", "operator rules: check, price");
-  rules.requires_subcommand();
-  add_rules_check(rules);
-  add_rules_price(rules);
-}
-
-// bess-train sweep: many runs, local or on a cluster.
-
-void add_sweep_commands(ProgramCommand& app) {
-  ProgramCommand sweep = app.subcommand(
-      "sweep", "many runs, local or on a cluster: plan, run, task, collect, packages");
-  sweep.requires_subcommand();
-  add_sweep_plan(sweep);
-  add_sweep_run(sweep);
-  add_sweep_task(sweep);
-  add_sweep_collect(sweep);
-  add_sweep_packages(sweep);
-}
-
 }  // namespace
 
 void add_commands(ProgramCommand& app) {

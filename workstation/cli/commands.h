@@ -1,19 +1,14 @@
-// Subcommands of bess-train: one file each in this folder, with options, help and action.
+// Commands of bess-train: one file each in this folder, with options, help and action.
 #pragma once
 
 #include "shared/host/command_line.h"
 
 namespace bess {
 
-void add_prices_simulate(ProgramCommand& prices);
-void add_prices_reconstruct(ProgramCommand& prices);
-void add_prices_import(ProgramCommand& prices);
-void add_prices_fetch(ProgramCommand& prices);
-void add_prices_stats(ProgramCommand& prices);
+void add_prices_commands(ProgramCommand& app);
+void add_rules_commands(ProgramCommand& app);
 void add_train_command(ProgramCommand& app);
 void add_distil_command(ProgramCommand& app);
-void add_rules_check(ProgramCommand& rules);
-void add_rules_price(ProgramCommand& rules);
 void add_verify_command(ProgramCommand& app);
 void add_evaluate_command(ProgramCommand& app);
 void add_backtest_command(ProgramCommand& app);
@@ -25,17 +20,11 @@ void add_refresh_command(ProgramCommand& app);
 void add_report_command(ProgramCommand& app);
 void add_run_command(ProgramCommand& app);
 void add_runs_commands(ProgramCommand& app);  ///< compare
-void add_sweep_plan(ProgramCommand& sweep);
-void add_sweep_run(ProgramCommand& sweep);
-void add_sweep_task(ProgramCommand& sweep);
-void add_sweep_collect(ProgramCommand& sweep);
-void add_sweep_packages(ProgramCommand& sweep);
+void add_sweep_commands(ProgramCommand& app);
 void add_battery_commands(ProgramCommand& app);  ///< fit
-void add_log_compare(ProgramCommand& log);
-void add_log_replay(ProgramCommand& log);
-void add_log_statement(ProgramCommand& log);
+void add_log_commands(ProgramCommand& app);
 
-/// All subcommands, grouped and ordered as in the help.
+/// All of them, grouped and ordered as in the help.
 void add_commands(ProgramCommand& app);
 
 }  // namespace bess
