@@ -99,10 +99,10 @@ std::vector<DayLoss> foresight_gap(const MarketSteps& market, const std::vector<
 // Page section on the profit gap (foresight_gap_page.cpp): by cause, by hour and month, and the
 // worst days.
 
-struct ReportInputs;
+struct RunResults;
 
 /// Losses of the exported policy over the test days.
-std::vector<DayLoss> losses_of(const ReportInputs& inputs);
+std::vector<DayLoss> losses_of(const RunResults& run);
 
 /// EUR per MWh of capacity.
 std::string foresight_gap_html(const std::vector<DayLoss>& losses, double capacity_mwh);

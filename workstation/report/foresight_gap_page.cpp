@@ -242,14 +242,13 @@ PictureTable day_table(const std::vector<DayLoss>& losses, double capacity_mwh) 
 
 }  // namespace
 
-std::vector<DayLoss> losses_of(const ReportInputs& in) {
+std::vector<DayLoss> losses_of(const RunResults& in) {
   const std::unique_ptr<Policy> exported = exported_policy(in.corrected);
-  const auto plain = std::make_shared<StudentPolicy>(in.uncorrected.net, in.uncorrected.outlook);
+  const auto plain = std::make_shared<StudentPolicy>(in.plain->net, in.plain->outlook);
   LossChain chain{.policy = *exported, .plain = plain.get()};
   std::optional<RuledPolicy> under_rules;
   const RuleSet rules = projected_rules(in.corrected.certificate.rules);
-  if (!rules.empty())
-    chain.under_rules = &under_rules.emplace(plain, rules, in.uncorrected.net.context);
+  if (!rules.empty()) chain.under_rules = &under_rules.emplace(plain, rules, in.plain->net.context);
   return foresight_gap(in.market, in.market.days_of(Split::kTest), chain, in.battery,
                        in.initial_soc_frac);
 }

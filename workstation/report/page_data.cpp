@@ -65,7 +65,7 @@ namespace {
 
 /// Calls `look` with each step on the page and its index among all records.
 template <typename Look>
-void for_each_step(const ReportInputs& in, const PageSteps& steps, Look look) {
+void for_each_step(const RunResults& in, const PageSteps& steps, Look look) {
   std::size_t first = 0;
   for (std::size_t d = 0; d < steps.days.size(); ++d) {
     const auto of_day = in.market.of(steps.days[d]);
@@ -76,7 +76,7 @@ void for_each_step(const ReportInputs& in, const PageSteps& steps, Look look) {
   }
 }
 
-PictureTable step_table(const ReportInputs& in, const PageSteps& steps) {
+PictureTable step_table(const RunResults& in, const PageSteps& steps) {
   PictureTable table{
       "steps", {"utc", "observed_eur_per_mwh", "paid_eur_per_mwh"}, {}, /*packed=*/true};
   for (const PolicySteps& policy : steps.policies) {
@@ -101,7 +101,7 @@ PictureTable step_table(const ReportInputs& in, const PageSteps& steps) {
 }
 
 /// One row per interval of prices with the same action, at each SoC.
-PictureTable map_table(const ReportInputs& in) {
+PictureTable map_table(const RunResults& in) {
   PictureTable table{"policy_map",
                      {"student", "context_class", "quarter_hour", "minute", "soc_frac",
                       "price_from_eur_per_mwh", "price_to_eur_per_mwh", "action"},
@@ -126,13 +126,13 @@ PictureTable map_table(const ReportInputs& in) {
     }
   };
   add(own_student_name(in.corrected.certificate), in.corrected.net);
-  add(kPlainName, in.uncorrected.net);
+  add(kPlainName, in.plain->net);
   return table;
 }
 
 }  // namespace
 
-std::vector<PictureTable> page_pictures(const ReportInputs& in, const PageSteps& steps) {
+std::vector<PictureTable> page_pictures(const RunResults& in, const PageSteps& steps) {
   return {step_table(in, steps), map_table(in), histogram_table(price_histogram(in.market))};
 }
 
@@ -169,14 +169,14 @@ Json policies_json(const std::vector<NamedEvaluation>& evaluations) {
 }
 
 /// Day-reset accounting, as in the section on the profit gap.
-std::vector<PolicySteps> all_steps(const ReportInputs& in, const std::vector<MarketDay>& days) {
+std::vector<PolicySteps> all_steps(const RunResults& in, const std::vector<MarketDay>& days) {
   std::vector<PolicySteps> all;
   const auto add = [&](const std::string& name, Policy& policy) {
     all.push_back({name, {}});
     evaluate(in.market, days, policy, {in.battery, in.initial_soc_frac, false},
              &all.back().records);
   };
-  StudentPolicy plain(in.uncorrected.net, in.uncorrected.outlook);
+  StudentPolicy plain(in.plain->net, in.plain->outlook);
   TeacherPolicy teacher(in.teacher);
   add(own_student_name(in.corrected.certificate), *exported_policy(in.corrected));
   add(kPlainName, plain);
@@ -196,7 +196,7 @@ std::vector<double> profits_by_day(const std::vector<MarketDay>& days, const Pol
 }
 
 /// Profits minus those of perfect foresight, if evaluated: the ranking of days on the page.
-std::vector<double> against_foresight(const ReportInputs& in, std::vector<double> profits) {
+std::vector<double> against_foresight(const RunResults& in, std::vector<double> profits) {
   const NamedEvaluation* bound = find_evaluation(in.evaluations, kForesightName);
   if (bound == nullptr || bound->day_reset.days.size() != profits.size()) {
     return profits;
@@ -208,7 +208,7 @@ std::vector<double> against_foresight(const ReportInputs& in, std::vector<double
 }
 
 /// Class of a step; by outlook for a battery in the middle of its SoC window.
-int context_class_of(const ReportInputs& in, const MarketStep& step) {
+int context_class_of(const RunResults& in, const MarketStep& step) {
   const StudentFile& student = in.corrected;
   const double middle_frac = 0.5 * (in.battery.soc_min_frac + in.battery.soc_max_frac);
   return student.net.context.class_of(
@@ -216,7 +216,7 @@ int context_class_of(const ReportInputs& in, const MarketStep& step) {
                                   : step.level_centi_eur_per_mwh);
 }
 
-Json archive_json(const ReportInputs& in, const PageSteps& steps) {
+Json archive_json(const RunResults& in, const PageSteps& steps) {
   Json archive = step_archive(in.market, steps.days, steps.policies, steps.kept,
                               [&](const MarketStep& step) { return context_class_of(in, step); });
   archive.set("days_left_out", steps.days.size() - steps.kept.size());
@@ -263,19 +263,19 @@ Json state_json(const LatticeState& s) {
 }
 
 /// State of each broken demand (null if unknown), for the buttons of failure_html().
-Json broken_json(const ReportInputs& in) {
+Json broken_json(const RunResults& in) {
   return Json::list_from(in.broken, [](const BrokenDemand& demand) {
     return demand.state ? state_json(*demand.state) : Json(NAN);
   });
 }
 
 /// Student whose counterexamples are shown: the corrected one if it has any, else the plain one.
-const Certificate& shown_as_wrong(const ReportInputs& in) {
+const Certificate& shown_as_wrong(const RunResults& in) {
   const Certificate& corrected = in.corrected.certificate;
-  return corrected.counterexamples.empty() ? in.uncorrected.certificate : corrected;
+  return corrected.counterexamples.empty() ? in.plain->certificate : corrected;
 }
 
-Json counterexamples_json(const ReportInputs& in) {
+Json counterexamples_json(const RunResults& in) {
   Json list = Json::list();
   const auto& found = shown_as_wrong(in).counterexamples;
   const std::size_t stride = found.size() / kCounterexamplesShown + 1;
@@ -303,7 +303,7 @@ double rule_validation_profit(const MarketSteps& market, const BatteryParameters
       .profit_eur_per_day_per_mwh();
 }
 
-Json learning_json(const ReportInputs& in) {
+Json learning_json(const RunResults& in) {
   Json training = Json::list();
   for (const CurvePoint& p : in.training_curve) {
     const bool is_kept = &p == &kept_point(in.training_curve);
@@ -365,7 +365,7 @@ std::vector<std::size_t> days_with_steps(const std::vector<double>& profit_eur, 
   return order;
 }
 
-PageSteps page_steps(const ReportInputs& in) {
+PageSteps page_steps(const RunResults& in) {
   PageSteps steps{in.market.days_of(Split::kTest), {}, {}};
   steps.policies = all_steps(in, steps.days);
   steps.kept = days_with_steps(
@@ -373,7 +373,7 @@ PageSteps page_steps(const ReportInputs& in) {
   return steps;
 }
 
-PolicyContext first_map(const ReportInputs& in) {
+PolicyContext first_map(const RunResults& in) {
   std::array<std::size_t, kContextClassCount + 1> steps{};
   for (const MarketDay& day : in.market.days_of(Split::kTest)) {
     for (const MarketStep& step : in.market.of(day)) {
@@ -391,7 +391,7 @@ Json rivals_json() {
   });
 }
 
-Json page_data(const ReportInputs& in, const PageSteps& steps) {
+Json page_data(const RunResults& in, const PageSteps& steps) {
   const std::vector<MarketDay>& days = steps.days;
   const Certificate& certificate = in.corrected.certificate;
   const ContextClasses& classes = in.corrected.net.context;
@@ -409,7 +409,7 @@ Json page_data(const ReportInputs& in, const PageSteps& steps) {
   data.set("contexts", contexts_json(classes));
   data.set("thresholds", thresholds_json(certificate.thresholds));
   data.set("students", Json::list_of(student_json(own_name, in.corrected.net),
-                                     student_json(kPlainName, in.uncorrected.net)));
+                                     student_json(kPlainName, in.plain->net)));
   data.set("counterexamples", counterexamples_json(in));
   data.set("counterexamples_of", &shown_as_wrong(in) == &certificate ? own_name : kPlainName);
   data.set("broken", broken_json(in));

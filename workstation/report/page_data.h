@@ -65,18 +65,18 @@ struct PageSteps {
   std::vector<PolicySteps> policies;  ///< on all of them; the exported policy first
   std::vector<std::size_t> kept;      ///< indices of the days on the page, ascending
 };
-PageSteps page_steps(const ReportInputs& inputs);
+PageSteps page_steps(const RunResults& run);
 
 /// Initial state of the map: most frequent class of the test days, at noon.
-PolicyContext first_map(const ReportInputs& inputs);
+PolicyContext first_map(const RunResults& run);
 
-Json page_data(const ReportInputs& inputs, const PageSteps& steps);
+Json page_data(const RunResults& run, const PageSteps& steps);
 
 // CSV data of pictures that no other file of the run contains: steps, initial maps and prices.
 // foresight_gap.h has its own; days, checkpoints and losses are in evaluation_days.csv,
 // training_curve.csv, student_checkpoints.csv and distil_curve.csv.
 
-std::vector<PictureTable> page_pictures(const ReportInputs& inputs, const PageSteps& steps);
+std::vector<PictureTable> page_pictures(const RunResults& run, const PageSteps& steps);
 
 /// Name of a run's teacher: "c51 teacher".
 std::string teacher_name(const Teacher& teacher);

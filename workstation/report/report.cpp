@@ -41,7 +41,7 @@ std::string battery_text(const BatteryParameters& battery) {
 }
 
 /// Run, prices, battery and date, as far as known: "first, market.csv, 8 MW, 16 MWh, 2026-11-23"
-std::string title_of(const ReportInputs& in) {
+std::string title_of(const RunResults& in) {
   const auto fact = [&](std::string_view name, std::string_view end) {
     const auto found = std::ranges::find(in.facts, name, &ProvenanceLine::name);
     return found == in.facts.end() ? "" : found->value.substr(0, found->value.rfind(end)) + ", ";
@@ -52,7 +52,7 @@ std::string title_of(const ReportInputs& in) {
 }
 
 /// Relation of the result to training days, and the walk-forward result.
-std::string standing_html(const ReportInputs& in) {
+std::string standing_html(const RunResults& in) {
   return fmt::format(
       "<div class=\"standing\">\n<p class=\"note\" id=\"test-days\">{}</p>\n<p class=\"note\" "
       "id=\"walk-forward\">{}</p>\n</div>\n",
@@ -60,7 +60,7 @@ std::string standing_html(const ReportInputs& in) {
       walk_forward_html(in.walk_forward));
 }
 
-std::string head_of(const ReportInputs& in) {
+std::string head_of(const RunResults& in) {
   const Certificate& certificate = in.corrected.certificate;
   const bool proved = certificate.covers_lattice_without_violation();
   const std::string text = fmt::format("<p class=\"verdict {}\">{}</p>\n",
@@ -81,17 +81,15 @@ std::string same_program_html(const std::vector<NamedEvaluation>& evaluations) {
   return text.empty() ? text : fmt::format("<p class=\"note\">{}.</p>\n", html_escaped(text));
 }
 
-double capacity_mwh_of(const ReportInputs& in) {
-  return in.battery.capacity_wh / kWattsPerMegawatt;
-}
+double capacity_mwh_of(const RunResults& in) { return in.battery.capacity_wh / kWattsPerMegawatt; }
 
-std::string page_of(const ReportInputs& in, const PageSteps& steps,
+std::string page_of(const RunResults& in, const PageSteps& steps,
                     const std::vector<DayLoss>& losses) {
   std::vector<ProvenanceLine> facts = in.facts;
   facts.push_back({"battery", battery_text(in.battery)});
   const std::optional<RulePrices> prices = rule_prices_of(in.evaluations);
   const bool has_failed = !in.broken.empty();
-  const Certificate& plain = in.uncorrected.certificate;
+  const Certificate& plain = in.plain->certificate;
   const Certificate& corrected = in.corrected.certificate;
   return format_report_page(
       {{"title", html_escaped(title_of(in))},
@@ -112,27 +110,27 @@ std::string page_of(const ReportInputs& in, const PageSteps& steps,
        {"rules_link", corrected.rules.empty() ? "" : "<li><a href=\"#rules\">Rules</a></li>\n"},
        {"proof", section_of("proof", "Proof", proof_html(plain, corrected))},
        {"provenance",
-        section_of("provenance", "Provenance", provenance_html(facts, in.provenance))}},
+        section_of("provenance", "Provenance", provenance_html(facts, in.corrected.provenance))}},
       page_data(in, steps));
 }
 
 }  // namespace
 
-std::vector<std::string> write_report(const ReportInputs& inputs, const fs::path& folder) {
-  if (inputs.market.days_of(Split::kTest).empty()) {
+std::vector<std::string> write_report(const RunResults& run, const fs::path& folder) {
+  if (run.market.days_of(Split::kTest).empty()) {
     fail("no test days (local days 26 to the end) in these prices; add prices");
   }
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) fail("{}: cannot create: {}", folder.string(), error.message());
   std::vector<std::string> names{kPage};
-  const std::vector<DayLoss> losses = losses_of(inputs);
-  const PageSteps steps = page_steps(inputs);
-  std::vector<PictureTable> pictures = page_pictures(inputs, steps);
-  std::ranges::move(foresight_gap_tables(losses, capacity_mwh_of(inputs)),
+  const std::vector<DayLoss> losses = losses_of(run);
+  const PageSteps steps = page_steps(run);
+  std::vector<PictureTable> pictures = page_pictures(run, steps);
+  std::ranges::move(foresight_gap_tables(losses, capacity_mwh_of(run)),
                     std::back_inserter(pictures));
   for (const PictureTable& table : pictures) names.push_back(write_picture(table, folder));
-  write_file(folder / kPage, page_of(inputs, steps, losses));
+  write_file(folder / kPage, page_of(run, steps, losses));
   return names;
 }
 

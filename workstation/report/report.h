@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,8 @@
 
 namespace bess {
 
-struct ReportInputs {
+/// Results of a run, for its evaluation and report.
+struct RunResults {
   const MarketSteps& market;  ///< delay and settlement as trained
   BatteryParameters battery = {};
   double initial_soc_frac = 0.5;                    ///< at the start of each test day
@@ -26,17 +28,16 @@ struct ReportInputs {
   std::vector<DistilPoint> distil_curve = {};       ///< may be empty
   std::vector<StudentCheckpoint> checkpoints = {};  ///< of the corrected student; may be empty
   const Teacher& teacher;
-  const StudentFile& uncorrected;  ///< both students with their certificate
-  const StudentFile& corrected;
+  std::optional<StudentFile> plain = {};  ///< none in a lean run, which has no report
+  StudentFile corrected;                  ///< both students with the run's certificate
   std::vector<BrokenDemand> broken = {};  ///< of an unproved student
   WalkForwardOfRun walk_forward = {};
-  std::string provenance = {};             ///< shown unchanged
   std::vector<ProvenanceLine> facts = {};  ///< date, host, inputs and command
 };
 
-/// Writes report.html and a CSV file for each picture into `folder` atomically; returns their
-/// names. Throws UserError when writing fails, or without test days.
-std::vector<std::string> write_report(const ReportInputs& inputs,
-                                      const std::filesystem::path& folder);
+/// Precondition: there is a plain student. Writes report.html and a CSV file for each picture into
+/// `folder` atomically; returns their names. Throws UserError when writing fails, or without test
+/// days.
+std::vector<std::string> write_report(const RunResults& run, const std::filesystem::path& folder);
 
 }  // namespace bess

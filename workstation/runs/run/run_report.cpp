@@ -339,11 +339,9 @@ std::string format_runs_table(const std::vector<RunSummary>& runs) {
 namespace {
 
 NamedEvaluation evaluate_both(const std::string& name, Policy& policy, const RunResults& run) {
-  const RunConfig& config = run.config;
   const std::vector<MarketDay> days = run.market.days_of(Split::kTest);
-  return {name,
-          evaluate(run.market, days, policy, {config.battery, config.initial_soc_frac, false}),
-          evaluate_carried_over(run.market, days, policy, config.battery, config.initial_soc_frac)};
+  return {name, evaluate(run.market, days, policy, {run.battery, run.initial_soc_frac, false}),
+          evaluate_carried_over(run.market, days, policy, run.battery, run.initial_soc_frac)};
 }
 
 /// Violations before and after the correction, by property and rule.
@@ -405,10 +403,10 @@ void require_test_days(const MarketSteps& market, const std::string& prices) {
   fail("{}: no test days (local days 26 to the end); add prices", prices);
 }
 
-std::vector<NamedEvaluation> evaluate_run(const RunResults& run) {
+std::vector<NamedEvaluation> evaluate_run(const RunResults& run, int threads) {
   std::vector<NamedEvaluation> all;
   const auto baseline = [&](const std::string& name) {
-    const auto policy = make_baseline(name, run.market, run.config.battery);
+    const auto policy = make_baseline(name, run.market, run.battery);
     all.push_back(evaluate_both(name, *policy, run));
   };
   for (const std::string& name : baseline_names(kInRuns)) {
@@ -416,8 +414,8 @@ std::vector<NamedEvaluation> evaluate_run(const RunResults& run) {
   }
   if (run.teacher.outlook) {  // the same plans for both accountings
     const std::vector<MarketDay> days = run.market.days_of(Split::kTest);
-    run.teacher.outlook->prepare(run.market, days, run.config.train.threads);
-    run.teacher.plan_cache->prepare(run.market, days, run.config.train.threads);
+    run.teacher.outlook->prepare(run.market, days, threads);
+    run.teacher.plan_cache->prepare(run.market, days, threads);
     OutlookPolicy program(run.teacher.outlook);
     all.push_back(evaluate_both(kOutlookProgramName, program, run));
   }
@@ -430,26 +428,12 @@ std::vector<NamedEvaluation> evaluate_run(const RunResults& run) {
   return all;
 }
 
-std::vector<std::string> write_run_report(const RunResults& run,
-                                          const std::vector<NamedEvaluation>& evaluations,
+std::vector<std::string> write_run_report(RunResults run, const RunConfig& config,
                                           const RunFolder& folder) {
-  const ReportInputs inputs{
-      .market = run.market,
-      .battery = run.config.battery,
-      .initial_soc_frac = run.config.initial_soc_frac,
-      .evaluations = evaluations,
-      .training_curve = run.training_curve,
-      .distil_curve = run.distil_curve,
-      .checkpoints = run.checkpoints,
-      .teacher = run.teacher,
-      .uncorrected = *run.plain,
-      .corrected = run.corrected,
-      .broken = broken_demands(run.corrected, run.config.distil.method),
-      .walk_forward = run.walk_forward,
-      .provenance = run.corrected.provenance,
-      .facts = run_facts(run.config, run.market, folder),
-  };
-  std::vector<std::string> names = write_report(inputs, folder.path);
+  const std::vector<NamedEvaluation>& evaluations = run.evaluations;
+  run.broken = broken_demands(run.corrected, config.distil.method);
+  run.facts = run_facts(config, run.market, folder);
+  std::vector<std::string> names = write_report(run, folder.path);
   const Certificate& certificate = run.corrected.certificate;
   const std::string alike = same_program_text(evaluations);
   std::string summary = certificate.violations() == 0 ? "" : proof_sentence(certificate) + "\n\n";
@@ -466,6 +450,7 @@ std::vector<std::string> write_run_report(const RunResults& run,
   }
   write_file(folder.file(run_file::kSummary), summary);
   names.emplace_back(run_file::kSummary);
+  std::ranges::sort(names);
   return names;
 }
 

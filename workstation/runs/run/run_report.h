@@ -9,7 +9,6 @@
 #include "workstation/data/env/market_steps.h"
 #include "workstation/report/comparison.h"
 #include "workstation/report/evaluation_days.h"
-#include "workstation/report/figures/curves.h"
 #include "workstation/report/report.h"
 #include "workstation/report/report_tables.h"
 #include "workstation/runs/chain/run_config.h"
@@ -69,29 +68,16 @@ RunLine load_run_line(const RunFolder& folder);
 /// Gains are over the first finished run. Links are relative to the folder of `page`.
 std::string runs_page(const std::vector<RunLine>& runs, const std::filesystem::path& page);
 
-struct RunResults {
-  const RunConfig& config;
-  const MarketSteps& market;
-  const Teacher& teacher;
-  std::optional<StudentFile> plain;  ///< none in a lean run
-  StudentFile corrected;             ///< both with the run's certificate
-  std::vector<CurvePoint> training_curve;
-  std::vector<DistilPoint> distil_curve;
-  WalkForwardOfRun walk_forward;  ///< of the same prices and configuration
-  std::vector<StudentCheckpoint> checkpoints = {};
-};
-
 /// Throws UserError naming `prices`. Call before training.
 void require_test_days(const MarketSteps& market, const std::string& prices);
 
 /// Test days in both accountings: rule-based first, then other baselines, teacher, plain student if
 /// any, corrected student and foresight.
-std::vector<NamedEvaluation> evaluate_run(const RunResults& run);
+std::vector<NamedEvaluation> evaluate_run(const RunResults& run, int threads);
 
-/// Precondition: there is a plain student. Writes figures with CSV files, report.html and summary;
-/// returns their names.
-std::vector<std::string> write_run_report(const RunResults& run,
-                                          const std::vector<NamedEvaluation>& evaluations,
+/// Completes the results and writes figures with CSV files, report.html and summary; returns their
+/// names in order. Precondition: there are evaluations and a plain student.
+std::vector<std::string> write_run_report(RunResults run, const RunConfig& config,
                                           const RunFolder& folder);
 
 }  // namespace bess

@@ -18,6 +18,7 @@
 #include "workstation/correction/student/correct_and_prove.h"
 #include "workstation/correction/student/export.h"
 #include "workstation/report/evaluation_days.h"
+#include "workstation/report/figures/curves.h"
 #include "workstation/runs/chain/chain_steps.h"
 #include "workstation/runs/chain/folder_lock.h"
 #include "workstation/runs/chain/price_input.h"
@@ -62,11 +63,6 @@ std::vector<DemandFigures> demand_figures(const Certificate& plain, const Certif
         {after[d].label(), d < before.size() ? before[d].violations : 0, after[d].violations});
   }
   return figures;
-}
-
-std::vector<std::string> sorted(std::vector<std::string> names) {
-  std::ranges::sort(names);
-  return names;
 }
 
 /// Market of all prices, or of the record's fold.
@@ -407,9 +403,9 @@ void RunStages::fail_the_proof() {
 
 /// The same page for an unproved student.
 RunStages::Names RunStages::make_failure_report() {
-  const RunResults run = results(unproved_student());
-  const std::vector<NamedEvaluation> evaluations = evaluate_run(run);
-  return sorted(write_run_report(run, evaluations, folder_));
+  RunResults run = results(unproved_student());
+  run.evaluations = evaluate_run(run, config_.train.threads);
+  return write_run_report(std::move(run), config_, folder_);
 }
 
 RunStages::Names RunStages::make_header() {
@@ -426,14 +422,16 @@ RunStages::Names RunStages::make_header() {
 
 RunResults RunStages::results(StudentFile corrected) {
   const auto text = [&](const char* name) { return read_file(path(name)); };
-  RunResults results{config_,
-                     market_,
-                     teacher(),
-                     {},
-                     std::move(corrected),
-                     parse_training_curve_csv(text(kTrainingCurve), path(kTrainingCurve).string()),
-                     parse_distil_curve_csv(text(kDistilCurve), path(kDistilCurve).string()),
-                     walk_forward_of(folder_, record_)};
+  RunResults results{
+      .market = market_,
+      .battery = config_.battery,
+      .initial_soc_frac = config_.initial_soc_frac,
+      .training_curve =
+          parse_training_curve_csv(text(kTrainingCurve), path(kTrainingCurve).string()),
+      .distil_curve = parse_distil_curve_csv(text(kDistilCurve), path(kDistilCurve).string()),
+      .teacher = teacher(),
+      .corrected = std::move(corrected),
+      .walk_forward = walk_forward_of(folder_, record_)};
   if (fs::exists(path(kCheckpoints))) {  // missing in older runs
     results.checkpoints = parse_student_checkpoints_csv(text(kCheckpoints), kCheckpoints);
   }
@@ -446,7 +444,7 @@ RunResults RunStages::results(StudentFile corrected) {
 
 RunStages::Names RunStages::make_evaluation() {
   const RunResults run = results(load_student(path(kStudent)));
-  const std::vector<NamedEvaluation> evaluations = evaluate_run(run);
+  const std::vector<NamedEvaluation> evaluations = evaluate_run(run, config_.train.threads);
   if (record_.is_lean()) record_.figures = figures_of(run);
   write_file(path(kTable), comparison_csv(evaluations));
   write_file(path(kDays), evaluation_days_csv(evaluations));
@@ -467,12 +465,11 @@ RunFigures RunStages::figures_of(const RunResults& run) const {
 }
 
 RunStages::Names RunStages::make_report() {
-  const RunResults run = results(load_student(path(kStudent)));
-  const auto evaluations =
+  RunResults run = results(load_student(path(kStudent)));
+  run.evaluations =
       parse_evaluation_days_csv(read_file(path(kDays)), path(kDays).string(), config_.battery);
-  Names names = write_run_report(run, evaluations, folder_);
   record_.figures = figures_of(run);
-  return sorted(std::move(names));
+  return write_run_report(std::move(run), config_, folder_);
 }
 
 std::string how_to_go_on(const RunFolder& folder, const RunRecord& record) {

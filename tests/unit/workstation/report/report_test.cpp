@@ -16,10 +16,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Everything that ReportInputs refers to.
+/// Teacher and student of a run.
 struct FinishedRun {
   Teacher teacher = untrained_teacher();
-  StudentFile student{untrained_student(), failed_certificate(), ""};
+  StudentFile student{untrained_student(), failed_certificate(), "seed 1 <untrained> & small"};
 
   static Certificate failed_certificate() {
     Certificate certificate;
@@ -29,20 +29,19 @@ struct FinishedRun {
     return certificate;
   }
 
-  [[nodiscard]] ReportInputs inputs() const {
+  [[nodiscard]] RunResults inputs() const {
     RuleBasedPolicy rule(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
     TeacherPolicy taught(teacher);
-    ReportInputs in{
-        .market = small_market(), .teacher = teacher, .uncorrected = student, .corrected = student};
+    RunResults in{
+        .market = small_market(), .teacher = teacher, .plain = student, .corrected = student};
     in.evaluations = {named_evaluation("rule-based", rule), named_evaluation("teacher", taught)};
     in.training_curve = {{0, 0, 100, 0}, {500, 3.0, 140, 0, 5}, {750, 2.9, 160, 0, -5}};
     in.distil_curve = {{1, 1.0, 0.1, 0.9}, {2, 0.5, 0.01, 0.4}, {3, 0.3, 0, 0.2}};
-    in.provenance = "seed 1 <untrained> & small";
     return in;
   }
 };
 
-std::string html_of(const ReportInputs& inputs, const fs::path& folder) {
+std::string html_of(const RunResults& inputs, const fs::path& folder) {
   write_report(inputs, folder);
   return read_file(folder / "report.html");
 }
@@ -116,8 +115,8 @@ TEST(Report, ThePageHoldsAllAndFetchesNothing) {
 /// state on the map.
 TEST(Report, APageOfAFailedProofIsAboutTheUnprovedStudent) {
   const TemporaryFolder folder;
-  FinishedRun run;
-  ReportInputs in = run.inputs();
+  const FinishedRun run;
+  RunResults in = run.inputs();
   RuleBasedPolicy policy(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
   in.evaluations.push_back(named_evaluation(kPlainName, policy));
   in.evaluations.push_back(named_evaluation(kUnprovedName, policy));
@@ -138,8 +137,8 @@ TEST(Report, APageOfAFailedProofIsAboutTheUnprovedStudent) {
   EXPECT_THAT(html, testing::HasSubstr("\"exported\":\"unproved student\""));
   EXPECT_THAT(html, testing::HasSubstr("\"counterexamples_of\":\"unproved student\""));
   in.broken.clear();
-  run.student.certificate.set_violations_of(3, 0);
-  run.student.certificate.counterexamples.clear();
+  in.corrected.certificate.set_violations_of(3, 0);
+  in.corrected.certificate.counterexamples.clear();
   EXPECT_EQ(count_of(html_of(in, folder.file("proved")), "href=\"#failure\""), 0U);
 }
 
@@ -150,7 +149,7 @@ TEST(Report, NoTestDaysAreRefused) {
   const FinishedRun run;
   EXPECT_THROW(write_report({.market = market,
                              .teacher = run.teacher,
-                             .uncorrected = run.student,
+                             .plain = run.student,
                              .corrected = run.student},
                             folder.file("run")),
                UserError);
@@ -159,7 +158,7 @@ TEST(Report, NoTestDaysAreRefused) {
 TEST(Report, TitleAndHeadingNameRunPricesBatteryAndDate) {
   const TemporaryFolder folder;
   const FinishedRun run;
-  ReportInputs in = run.inputs();
+  RunResults in = run.inputs();
   in.facts = {{"date", "2026-11-23T12:00Z"}, {"run", "<first>"}, {"prices", "a.csv: crc32 1"}};
   const std::string html = html_of(in, folder.file("run"));
   EXPECT_EQ(count_of(html, ">&lt;first&gt;, a.csv, 4 MW, 8 MWh, 2026-11-23</"), 2U);

@@ -54,7 +54,9 @@ StudentFile with_rules(const StudentNet& net, const std::string& first) {
                       "[[rule]]\nname = \"falls with price\"\nnever_rises_with = \"price\"\n",
                   "fixture");
   const VerifyOptions options{.rules = rules, .context_stride = 1'999, .counterexamples_max = 25};
-  StudentFile student{net, verify_student(net, options), "by hand"};
+  StudentFile student{net, verify_student(net, options),
+                      "a line that is long enough to be broken on a narrow screen: crc32 "
+                      "0123456789abcdef0123456789abcdef0123456789abcdef"};
   student.certificate.states_checked = kLatticeStateCount;
   return student;
 }
@@ -79,11 +81,9 @@ void write_page(const StudentFile& corrected, const StudentFile& plain,
                 .checkpoints = {{1, 80, 104.25, CheckpointState::kDisobeys},
                                 {1, 100, 103, CheckpointState::kChosen}},
                 .teacher = teacher,
-                .uncorrected = plain,
+                .plain = plain,
                 .corrected = corrected,
                 .broken = broken_demands(corrected, CorrectionMethod::kConstruction),
-                .provenance = "a line that is long enough to be broken on a narrow screen: crc32 "
-                              "0123456789abcdef0123456789abcdef0123456789abcdef",
                 .facts = {{"prices", "prices.csv.gz: crc32 0badcafe, 123456 bytes"}}},
                folder);
 }
