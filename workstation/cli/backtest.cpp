@@ -195,7 +195,6 @@ void run_backtest(const BacktestArguments& options) {
                           std::move(fitted_days),
                           folds.skipped,
                           options.plan.window_days,
-                          config.battery.capacity_wh / kWattsPerMegawatt,
                           fmt::format("{} on {} file{}, prices {:08x}, seed {}", BESS_VERSION,
                                       options.prices.size(), options.prices.size() == 1 ? "" : "s",
                                       prices_checksum(series), config.train.seed),

@@ -17,7 +17,6 @@ struct BacktestResults {
   std::vector<std::size_t> fitted_days;  ///< number of training days, by month
   std::vector<SkippedMonth> skipped;
   int window_days;
-  double capacity_mwh;
   std::string provenance;              ///< one line: prices, configuration
   std::string learnt_from{};           ///< identity: prices, seed and configuration
   std::vector<FoldRegimes> regimes{};  ///< by month

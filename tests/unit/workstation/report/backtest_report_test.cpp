@@ -40,7 +40,6 @@ BacktestResults results(double second_day_eur) {
           {90, 120},
           {{"2023-02", "31 of the 120 days before it are there"}},
           120,
-          1,
           "made by hand"};
 }
 
