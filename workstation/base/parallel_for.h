@@ -5,11 +5,8 @@
 #include <atomic>
 #include <cstddef>
 #include <exception>
-#include <mutex>
 #include <thread>
 #include <vector>
-
-#include "workstation/base/progress.h"
 
 namespace bess {
 
@@ -35,18 +32,6 @@ void parallel_for(std::size_t count, int threads, const Job& job) {
     work();
   }
   if (failure) std::rethrow_exception(failure);
-}
-
-/// The same, with progress after each job.
-template <typename Job>
-void parallel_for(std::size_t count, int threads, Progress& progress, const Job& job) {
-  std::mutex mutex;
-  std::size_t done = 0;
-  parallel_for(count, threads, [&](std::size_t i) {
-    job(i);
-    const std::lock_guard lock(mutex);
-    progress.update(static_cast<double>(++done));
-  });
 }
 
 }  // namespace bess

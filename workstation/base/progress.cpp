@@ -71,6 +71,11 @@ void Progress::update(double done, std::string_view note) {
   next_ = Clock::now() + (terminal_ ? kTerminalInterval : kLogInterval);
 }
 
+void Progress::advance(std::string_view note) {
+  const std::lock_guard lock(mutex_);
+  update(done_ + 1, note);
+}
+
 void Progress::print(double done, std::string_view note, bool last) {
   const double elapsed_s = std::chrono::duration<double>(Clock::now() - start_).count();
   const double rate_per_s = elapsed_s > 0 ? (done - done_before_) / elapsed_s : 0;

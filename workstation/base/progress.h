@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <mutex>
 #include <string>
 #include <string_view>
 
@@ -31,6 +32,8 @@ class Progress {
 
   /// Shows `done` of the total; cheap to call often. `note` is appended where it fits.
   void update(double done, std::string_view note = {});
+  /// One more is done; for jobs on several threads.
+  void advance(std::string_view note = {});
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -40,7 +43,8 @@ class Progress {
   std::string unit_;
   double total_;
   double done_before_;
-  double done_ = 0;
+  double done_ = done_before_;
+  std::mutex mutex_;
   std::string note_;
   bool terminal_;
   bool printed_ = false;

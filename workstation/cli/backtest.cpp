@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <mutex>
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
@@ -148,12 +147,9 @@ void learn_folds(const Folds& folds, Learning of, const std::vector<std::string>
   of.config.set_threads(1);
   Progress progress("train", "folds", static_cast<double>(folds.traded.size()),
                     static_cast<double>(folds.traded.size() - missing.size()));
-  std::mutex mutex;
-  std::size_t done = folds.traded.size() - missing.size();
   parallel_for(missing.size(), threads, [&](std::size_t i) {
     learn_fold(*missing[i], of);
-    const std::lock_guard lock(mutex);
-    progress.update(static_cast<double>(++done), missing[i]->month);
+    progress.advance(missing[i]->month);
   });
 }
 
@@ -208,7 +204,7 @@ void run_backtest(const BacktestArguments& options) {
     };
     results.policies.push_back(walk_forward(
         name, folds, make, config.battery, config.initial_soc_frac, market, options.and_day_reset));
-    progress.update(static_cast<double>(results.policies.size()), name);
+    progress.advance(name);
   }
   write_file(folder / "backtest.csv", backtest_csv(results));
   write_file(folder / "backtest_days.csv", backtest_days_csv(results));

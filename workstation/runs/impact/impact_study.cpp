@@ -214,10 +214,11 @@ std::vector<ImpactRow> study_impact(const ImpactPlan& plan, const FleetOptions& 
   const auto seeds = static_cast<std::size_t>(plan.seeds);
   std::vector<std::vector<std::vector<ImpactFigures>>> found(formulas * seeds);
   Progress progress("impact", "markets", static_cast<double>(found.size()));
-  parallel_for(found.size(), plan.threads, progress, [&](std::size_t i) {
+  parallel_for(found.size(), plan.threads, [&](std::size_t i) {
     FleetOptions options = base;
     options.formula = static_cast<PriceFormula>(i / seeds);
     found[i] = figures_of(plan, options, SeedOfMarket(plan, i % seeds + 1));
+    progress.advance();
   });
   const std::vector<ImpactVariant> variants = impact_variants(plan);
   std::vector<ImpactRow> rows;

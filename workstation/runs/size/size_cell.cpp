@@ -210,8 +210,10 @@ std::vector<SizeClass> trade_classes(const std::vector<RunConfig>& configs,
                                      const SizeBacktest& backtest) {
   std::vector<SizeClass> classes(configs.size());
   Progress progress("size", "classes", static_cast<double>(configs.size()));
-  parallel_for(configs.size(), backtest.threads, progress,
-               [&](std::size_t c) { classes[c] = trade_class(configs[c], backtest); });
+  parallel_for(configs.size(), backtest.threads, [&](std::size_t c) {
+    classes[c] = trade_class(configs[c], backtest);
+    progress.advance();
+  });
   return classes;
 }
 
