@@ -11,10 +11,7 @@ namespace {
 /// Tolerance at the ends of the SoC window, below the resolution of the student.
 constexpr double kAtTheEndFrac = 0.005;
 
-struct CauseText {
-  std::string_view key, name, meaning;
-};
-constexpr std::array<CauseText, kLossCauseCount> kTexts{{
+constexpr std::array<LossCauseText, kLossCauseCount> kTexts{{
     {"dear_missed", "missed high price",
      "discharging was optimal, but the policy did not discharge"},
     {"cheap_missed", "missed low price", "charging was optimal, but the policy did not charge"},
@@ -33,8 +30,6 @@ constexpr std::array<CauseText, kLossCauseCount> kTexts{{
     {"cycle_limit", "cycle limit", "the full cycles of the day were used up, or saved for later"},
     {"rounding", "rounding", "of the foresight plan, which uses a SoC grid"},
 }};
-
-const CauseText& text_of(LossCause cause) { return kTexts[static_cast<std::size_t>(cause)]; }
 
 double median_paid(const std::vector<StepRecord>& records) {
   std::vector<double> paid;
@@ -186,9 +181,7 @@ class DayJudge {
 
 }  // namespace
 
-std::string_view loss_cause_key(LossCause cause) { return text_of(cause).key; }
-std::string_view loss_cause_name(LossCause cause) { return text_of(cause).name; }
-std::string_view loss_cause_meaning(LossCause cause) { return text_of(cause).meaning; }
+const LossCauseText& text_of(LossCause cause) { return kTexts[static_cast<std::size_t>(cause)]; }
 
 LossCause DayLoss::main_cause() const {
   return static_cast<LossCause>(std::ranges::max_element(part_eur) - part_eur.begin());

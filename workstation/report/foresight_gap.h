@@ -49,12 +49,12 @@ enum class LossCause : std::uint8_t {
 };
 inline constexpr std::size_t kLossCauseCount = 11;
 
-/// Stable key for files: "dear_missed".
-std::string_view loss_cause_key(LossCause cause);
-/// For output: "missed high price".
-std::string_view loss_cause_name(LossCause cause);
-/// Explanation, without a full stop.
-std::string_view loss_cause_meaning(LossCause cause);
+struct LossCauseText {
+  std::string_view key;      ///< stable, for files: "dear_missed"
+  std::string_view name;     ///< for output: "missed high price"
+  std::string_view meaning;  ///< without a full stop
+};
+const LossCauseText& text_of(LossCause cause);
 
 /// Decision with the largest loss by one cause.
 struct GapMoment {

@@ -83,7 +83,7 @@ std::string causes_html(const Means& means) {
         "<tr><th scope=\"row\">{}<small>{}</small><i class=\"{}\" "
         "style=\"--share:{:.1f}%\"></i></th><td data-label=\"EUR/day/MWh\">{}</td><td "
         "data-label=\"% of gap\">{}</td></tr>\n",
-        loss_cause_name(cause), loss_cause_meaning(cause), part < 0 ? "helped" : "lost",
+        text_of(cause).name, text_of(cause).meaning, part < 0 ? "helped" : "lost",
         100 * std::abs(part) / reach, number(part), number(100 * part / means.missed));
   }
   return text +
@@ -136,7 +136,7 @@ std::string parts_text(const DayLoss& day, double capacity_mwh) {
   std::string text;
   for (const LossCause cause : causes_of(day.part_eur)) {
     if (std::abs(day.of(cause)) < kNamedShare * day.missed_eur()) continue;
-    text += fmt::format("{}{} <b>{}</b>", text.empty() ? "" : ", ", loss_cause_name(cause),
+    text += fmt::format("{}{} <b>{}</b>", text.empty() ? "" : ", ", text_of(cause).name,
                         number(day.of(cause) / capacity_mwh));
   }
   return text;
@@ -193,7 +193,7 @@ PictureTable cause_table(const std::vector<DayLoss>& losses, double capacity_mwh
   PictureTable table{"lost_causes", {"cause", "missed_eur_per_day_per_mwh"}, {}};
   for (const LossCause cause : causes_of(means.part)) {
     table.rows.push_back(
-        {std::string(loss_cause_key(cause)), exact(means.part[static_cast<std::size_t>(cause)])});
+        {std::string(text_of(cause).key), exact(means.part[static_cast<std::size_t>(cause)])});
   }
   table.rows.push_back({"all", exact(means.missed)});
   return table;
@@ -214,7 +214,7 @@ PictureTable day_table(const std::vector<DayLoss>& losses, double capacity_mwh) 
                      {"date", "missed_eur_per_mwh", "earned_eur_per_mwh", "foresight_eur_per_mwh"},
                      {}};
   for (std::size_t c = 0; c < kLossCauseCount; ++c) {
-    table.columns.push_back(fmt::format("{}_eur_per_mwh", loss_cause_key(cause_at(c))));
+    table.columns.push_back(fmt::format("{}_eur_per_mwh", text_of(cause_at(c)).key));
   }
   for (const char* column :
        {"main_cause", "moment_utc", "moment_soc", "moment_action", "moment_best_action",
@@ -227,7 +227,7 @@ PictureTable day_table(const std::vector<DayLoss>& losses, double capacity_mwh) 
                                  exact(day->foresight_eur / capacity_mwh)};
     for (const double part : day->part_eur) row.push_back(exact(part / capacity_mwh));
     const GapMoment& m = day->moment[static_cast<std::size_t>(day->main_cause())];
-    row.emplace_back(loss_cause_key(day->main_cause()));
+    row.emplace_back(text_of(day->main_cause()).key);
     row.emplace_back(utc_text(m.step.utc_s).view());
     row.push_back(fmt::format("{:.4f}", m.soc_frac));
     row.emplace_back(action_name(m.done));

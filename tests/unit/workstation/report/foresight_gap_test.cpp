@@ -92,10 +92,10 @@ void expect_alone(const DayLoss& loss, LossCause cause, double missed_eur) {
   const double near_eur = 0.1 + 0.001 * missed_eur;  // the bound's grid
   EXPECT_NEAR(loss.missed_eur(), missed_eur, near_eur);
   EXPECT_NEAR(sum_of(loss), loss.missed_eur(), 1e-9);
-  EXPECT_EQ(loss.main_cause(), cause) << loss_cause_name(loss.main_cause());
+  EXPECT_EQ(loss.main_cause(), cause) << text_of(loss.main_cause()).name;
   for (std::size_t c = 0; c < kLossCauseCount; ++c) {
     const double wanted = c == static_cast<std::size_t>(cause) ? loss.missed_eur() : 0;
-    EXPECT_NEAR(loss.part_eur[c], wanted, near_eur) << loss_cause_name(static_cast<LossCause>(c));
+    EXPECT_NEAR(loss.part_eur[c], wanted, near_eur) << text_of(static_cast<LossCause>(c)).name;
   }
 }
 
@@ -125,7 +125,7 @@ TEST(LostMoney, EachCauseAlone) {
       {dear_day(), asleep, nullptr, attentive, 0.5, LossCause::kCorrection, kSpikeEur},
       {dear_day(), asleep, attentive, attentive, 0.5, LossCause::kCorrection, kSpikeEur}};
   for (const auto& c : cases) {
-    SCOPED_TRACE(loss_cause_name(c.cause));
+    SCOPED_TRACE(text_of(c.cause).name);
     FunctionPolicy exported(c.exported), under(c.under), plain(c.plain);
     expect_alone(
         loss_of(c.market, {exported, c.under ? &under : nullptr, c.plain ? &plain : nullptr},
@@ -220,7 +220,7 @@ TEST(LostMoney, AllPartsAddUpWhateverHappens) {
     for (const double hour : loss.regret_eur) EXPECT_GE(hour, 0);
     for (const LossCause cause : {LossCause::kDearMissed, LossCause::kCheapMissed,
                                   LossCause::kEmpty, LossCause::kFull, LossCause::kTiming}) {
-      EXPECT_GE(loss.of(cause), 0) << loss_cause_name(cause);
+      EXPECT_GE(loss.of(cause), 0) << text_of(cause).name;
     }
   }
 }
