@@ -10,7 +10,6 @@
 #include <map>
 #include <memory>
 #include <set>
-#include <span>
 
 #include "shared/host/csv.h"
 #include "shared/host/file.h"
@@ -148,24 +147,27 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Column {
-  const char* name;  ///< in a run's table and in tasks.csv
+  const char* name;  ///< in tasks.csv and, of the carried-over row, in a run's table
   int decimals;
+  bool is_reset_profit = false;  ///< from the day-reset row
 };
 constexpr const char* kProfit = "profit_eur_per_day_per_mwh";
 constexpr const char* kCycles = "cycles_per_day";
-/// Columns of the carried-over row; the day-reset profit is from the other row.
-constexpr Column kBefore[] = {{"days", 0},
-                              {kProfit, 4},
-                              {"profit_standard_error", 4},
-                              {"profit_standard_error_by_month", 4},
-                              {"gain_eur_per_day_per_mwh", 4},
-                              {"profit_at_wear_10_eur_per_day_per_mwh", 4}};
-constexpr Column kBehind[] = {{kCycles, 4}, {"share_of_foresight", 6}};
+constexpr Column kColumns[] = {{"days", 0},
+                               {kProfit, 4},
+                               {"profit_standard_error", 4},
+                               {"profit_standard_error_by_month", 4},
+                               {"gain_eur_per_day_per_mwh", 4},
+                               {"profit_at_wear_10_eur_per_day_per_mwh", 4},
+                               {"profit_day_reset_eur_per_day_per_mwh", 4, true},
+                               {kCycles, 4},
+                               {"share_of_foresight", 6}};
 
-std::string columns_of(const CsvTable& table, std::size_t row, std::span<const Column> columns) {
+std::string columns_of(const CsvTable& table, std::size_t carried, std::size_t reset) {
   std::string text;
-  for (const auto& [name, decimals] : columns) {
-    const std::size_t at = table.column(name);
+  for (const auto& [name, decimals, is_reset_profit] : kColumns) {
+    const std::size_t row = is_reset_profit ? reset : carried;
+    const std::size_t at = table.column(is_reset_profit ? kProfit : name);
     const bool is_known = !table.text(row, at).empty();
     text += is_known ? fmt::format(",{:.{}f}", table.number(row, at), decimals) : std::string(",");
   }
@@ -189,10 +191,9 @@ TaskFigures figures_in(const fs::path& result) {
   const std::string hash = json.value()["figures"]["weights_hash"].text_or("");
   if (hash.empty())
     fail("{}: weights_hash is missing; delete the folder and repeat the task", record);
-  const std::size_t profit = table.column(kProfit);
-  return {table.number(*carried, profit), table.number(*carried, table.column(kCycles)),
-          fmt::format("{},{:.4f}{},{}", columns_of(table, *carried, kBefore),
-                      table.number(*reset, profit), columns_of(table, *carried, kBehind), hash)};
+  return {table.number(*carried, table.column(kProfit)),
+          table.number(*carried, table.column(kCycles)),
+          columns_of(table, *carried, *reset) + "," + hash};
 }
 
 std::string last_line(const fs::path& log) {
@@ -287,15 +288,12 @@ std::string tasks_csv(const std::vector<CollectedTask>& tasks) {
   const std::vector<std::string> names = names_in(tasks);
   std::string text = "task,state";
   for (const std::string& name : names) text.append(",").append(csv_field(name));
-  text +=
-      ",days,profit_eur_per_day_per_mwh,profit_standard_error,profit_standard_error_by_month,"
-      "gain_eur_per_day_per_mwh,profit_at_wear_10_eur_per_day_per_mwh,"
-      "profit_day_reset_eur_per_day_per_mwh,cycles_per_day,share_of_foresight,weights_hash,"
-      "seconds\n";
+  for (const auto& column : kColumns) text.append(",").append(column.name);
+  text += ",weights_hash,seconds\n";
   for (const CollectedTask& task : tasks) {
     text += fmt::format("{},{}", task.task.number, kStates[static_cast<std::size_t>(task.state)]);
     for (const std::string& name : names) text.append(",").append(csv_field(task.task.value(name)));
-    text += task.figures ? task.figures->columns : ",,,,,,,,,,";
+    text += task.figures ? task.figures->columns : std::string(std::size(kColumns) + 1, ',');
     text += task.seconds > 0 ? fmt::format(",{:.2f}\n", task.seconds) : std::string(",\n");
   }
   return text;
