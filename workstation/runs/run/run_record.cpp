@@ -55,12 +55,18 @@ Entries marks_of(const std::vector<std::string>& names, const RunFolder& folder)
 
 }  // namespace
 
-Json demands_json(const std::vector<DemandFigures>& demands) {
-  return Json::list_from(demands, [](const DemandFigures& d) {
-    return Json::object({{"demand", d.demand},
-                         {"violations_plain", d.violations_plain},
-                         {"violations_corrected", d.violations_corrected}});
-  });
+void add_figures(const RunFigures& figures, Json& json) {
+  json.set("provenance", figures.provenance);
+  json.set("weights_hash", figures.weights_hash);
+  json.set("states_checked", figures.states_checked);
+  json.set("states_checked_plain", figures.states_checked_plain);
+  json.set("violations_plain", figures.violations_plain);
+  json.set("violations_corrected", figures.violations_corrected);
+  json.set("demands", Json::list_from(figures.demands, [](const DemandFigures& d) {
+             return Json::object({{"demand", d.demand},
+                                  {"violations_plain", d.violations_plain},
+                                  {"violations_corrected", d.violations_corrected}});
+           }));
 }
 
 std::string file_mark(const fs::path& path) {
@@ -211,15 +217,9 @@ void save_run_record(const RunFolder& folder, const RunRecord& record) {
   }
   json.set("stages", std::move(stages));
   if (record.figures) {
-    const RunFigures& f = *record.figures;
-    Json figures = Json::object({{"provenance", f.provenance},
-                                 {"weights_hash", f.weights_hash},
-                                 {"states_checked", f.states_checked},
-                                 {"states_checked_plain", f.states_checked_plain},
-                                 {"violations_plain", f.violations_plain},
-                                 {"violations_corrected", f.violations_corrected}});
-    figures.set("demands", demands_json(f.demands));
-    figures.set("last_learnt_day", f.last_learnt_day);
+    Json figures = Json::object();
+    add_figures(*record.figures, figures);
+    figures.set("last_learnt_day", record.figures->last_learnt_day);
     json.set("figures", std::move(figures));
   }
   write_file(folder.record(), json.text());

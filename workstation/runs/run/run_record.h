@@ -65,8 +65,6 @@ struct DemandFigures {
   std::int64_t violations_corrected = 0;
 };
 
-Json demands_json(const std::vector<DemandFigures>& demands);
-
 /// Results of a finished run.
 struct RunFigures {
   std::string provenance;
@@ -78,6 +76,9 @@ struct RunFigures {
   std::vector<DemandFigures> demands = {};  ///< their sums are the violations
   std::string last_learnt_day = {};         ///< used for training or selection; empty: unknown
 };
+
+/// Adds them, without the last learnt day, to a manifest or an answer.
+void add_figures(const RunFigures& figures, Json& json);
 
 /// In `identity`, if there are rules: the text of a rule file.
 inline constexpr const char* kRulesKey = "rules";

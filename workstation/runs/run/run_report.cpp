@@ -269,18 +269,11 @@ RunSummary load_run_summary(const RunFolder& folder) {
 
 Json summary_json(const RunSummary& run) {
   const RunRecord& record = run.record;
-  const RunFigures& figures = *record.figures;
   Json json = answer("run");
   json.set("run", run.folder.path.string());
   json.set("prices", record.prices);
   json.set("seed", record.config(run.folder).train.seed);
-  json.set("provenance", figures.provenance);
-  json.set("weights_hash", figures.weights_hash);
-  json.set("states_checked", figures.states_checked);
-  json.set("states_checked_plain", figures.states_checked_plain);
-  json.set("violations_plain", figures.violations_plain);
-  json.set("violations_corrected", figures.violations_corrected);
-  json.set("demands", demands_json(figures.demands));
+  add_figures(*record.figures, json);
   const auto prices = rule_prices_of(run.evaluations);
   json.set("price_of_correction", prices ? rule_prices_table(*prices).json() : Json::null());
   const auto headline = headline_of(run.evaluations);
