@@ -171,14 +171,13 @@ NamedEvaluation evaluate_policy(const std::string& name, const EvaluationSetup& 
   for (const bool carry_soc : {false, true}) {
     if (!(carry_soc ? options.wants_carried() : options.wants_reset())) continue;
     std::vector<StepRecord> steps;
+    std::vector<StepRecord>* const wanted_steps = wants_steps ? &steps : nullptr;
     Evaluation& evaluation = carry_soc ? named.carried_over : named.day_reset;
-    evaluation = evaluate(setup.market, setup.days, *policy,
-                          {config.battery, config.initial_soc_frac, carry_soc},
-                          wants_steps ? &steps : nullptr);
-    if (carry_soc) {
-      value_charge_left(evaluation, config.battery,
-                        mean_settled_eur_per_mwh(setup.market, setup.days));
-    }
+    evaluation = carry_soc
+                     ? evaluate_carried_over(setup.market, setup.days, *policy, config.battery,
+                                             config.initial_soc_frac, wanted_steps)
+                     : evaluate(setup.market, setup.days, *policy,
+                                {config.battery, config.initial_soc_frac, false}, wanted_steps);
     if (setup.only_day) keep_day(*setup.only_day, setup.market, evaluation, steps);
     if (records != nullptr) records->add(name, carry_soc, evaluation, steps);
   }

@@ -1,6 +1,5 @@
 #include "workstation/runs/chain/common_options.h"
 
-#include <charconv>
 #include <cstdlib>
 #include <thread>
 
@@ -57,9 +56,7 @@ std::vector<double> numbers_in(const std::vector<std::string>& texts, double low
   std::vector<double> numbers;
   for (const std::string& text : texts) {
     double number = 0;
-    const char* const end = text.data() + text.size();
-    const auto read = std::from_chars(text.data(), end, number);
-    if (read.ec != std::errc() || read.ptr != end || !(number >= low && number <= high)) {
+    if (!read_number(text, number) || !(number >= low && number <= high)) {
       fail("{} {}: use {}", option, text, usage);
     }
     numbers.push_back(number);
