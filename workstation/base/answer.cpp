@@ -9,8 +9,10 @@ std::string value_in(const Entries& entries, std::string_view name) {
   return found == entries.end() ? std::string() : found->second;
 }
 
-Json answer(const char* kind) {
-  return Json::object({{"schema_version", kSchemaVersion}, {"answer", kind}});
+Json answer(const char* kind, std::initializer_list<JsonMember> members) {
+  Json json = Json::object({{"schema_version", kSchemaVersion}, {"answer", kind}});
+  for (const JsonMember& member : members) json.set(member.key, std::move(member.value));
+  return json;
 }
 
 Json text_or_null(const std::string& text) { return text.empty() ? Json::null() : Json(text); }

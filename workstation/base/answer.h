@@ -4,6 +4,7 @@
 // unit. The options do not change the members of an answer.
 #pragma once
 
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -36,8 +37,8 @@ inline constexpr const char* kCarrySoc = "carry_soc";
 inline constexpr const char* kCarriedOver = "carried_over";
 }  // namespace key
 
-/// {"schema_version": 1, "answer": "KIND"}: the first members of every answer.
-Json answer(const char* kind);
+/// {"schema_version": 1, "answer": "KIND"}, the first members of every answer, and `members`.
+Json answer(const char* kind, std::initializer_list<JsonMember> members = {});
 
 /// null for an empty text.
 Json text_or_null(const std::string& text);

@@ -82,11 +82,10 @@ void print_found(const std::vector<std::pair<std::string, Fitted>>& found, bool 
                  value.observations);
       continue;
     }
-    Json line = answer("battery_key");
-    line.set("key", name);
-    line.set("value", Decimals{value.value, 6});
-    line.set("standard_error", Decimals{value.standard_error, 6});
-    line.set("observations", value.observations);
+    const Json line = answer("battery_key", {{"key", name},
+                                             {"value", Decimals{value.value, 6}},
+                                             {"standard_error", Decimals{value.standard_error, 6}},
+                                             {"observations", value.observations}});
     fmt::print("{}\n", line.line());
   }
 }

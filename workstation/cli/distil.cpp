@@ -41,12 +41,11 @@ void print_result(const DistilArguments& options, const CorrectionResult& result
   const Certificate& c = student_of(result.verdict).certificate;
   const std::size_t rounds = result.rounds.size();
   if (options.json) {
-    Json json = answer("student");
-    json.set("student", options.out);
-    json.set("weights_hash",
-             fmt::format("{:08x}", student_weights_hash(student_of(result.verdict).net)));
-    json.set("corrected", !options.plain);
-    json.set("rounds", rounds);
+    const std::uint32_t hash = student_weights_hash(student_of(result.verdict).net);
+    Json json = answer("student", {{"student", options.out},
+                                   {"weights_hash", fmt::format("{:08x}", hash)},
+                                   {"corrected", !options.plain},
+                                   {"rounds", rounds}});
     add_certificate(c, json);
     fmt::print("{}\n", json.line());
     return;

@@ -74,11 +74,10 @@ using Rows = std::vector<ComparisonRow>;
 
 Json evaluation_json(const NamedEvaluation& named, std::size_t index, const Rows& rows,
                      const Rows& carried, const EvaluateArguments& options) {
-  Json json = answer("evaluation");
-  json.set("policy", named.name);
-  json.set("split", options.split);
-  json.set("date", text_or_null(options.date));
-  json.set(key::kCarrySoc, options.carry_soc);
+  Json json = answer("evaluation", {{"policy", named.name},
+                                    {"split", options.split},
+                                    {"date", text_or_null(options.date)},
+                                    {key::kCarrySoc, options.carry_soc}});
   add_figures(rows[index], json);
   json.set("description", text_or_null(named.description));
   if (carried.empty()) {

@@ -42,26 +42,21 @@ struct CheckArguments {
 Json rule_json(const Rule& rule, ContextKind kind, const std::string& policy,
                const std::string& split, std::optional<std::int64_t> decisions,
                const std::optional<WatchCount>& count) {
-  const auto whole = [](std::optional<std::int64_t> number) {
-    return number ? Json(*number) : Json::null();
-  };
   const auto counted = [&](std::int64_t WatchCount::*field) {
     return count ? Json((*count).*field) : Json::null();
   };
-  Json json = answer("rule");
-  json.set("rule", rule.name);
-  json.set("rule_text", rule.text());
-  json.set("context", context_name(kind));
-  json.set("binds_student", binds_student(rule, kind));
-  json.set("enforced", rule.enforce);
-  json.set("policy", text_or_null(policy));
-  json.set("split", text_or_null(split));
-  json.set("decisions", whole(decisions));
-  json.set("visited", counted(&WatchCount::visited));
-  json.set("visited_broken", counted(&WatchCount::visited_broken));
-  json.set("drawn", counted(&WatchCount::drawn));
-  json.set("drawn_broken", counted(&WatchCount::drawn_broken));
-  return json;
+  return answer("rule", {{"rule", rule.name},
+                         {"rule_text", rule.text()},
+                         {"context", context_name(kind)},
+                         {"binds_student", binds_student(rule, kind)},
+                         {"enforced", rule.enforce},
+                         {"policy", text_or_null(policy)},
+                         {"split", text_or_null(split)},
+                         {"decisions", decisions ? Json(*decisions) : Json::null()},
+                         {"visited", counted(&WatchCount::visited)},
+                         {"visited_broken", counted(&WatchCount::visited_broken)},
+                         {"drawn", counted(&WatchCount::drawn)},
+                         {"drawn_broken", counted(&WatchCount::drawn_broken)}});
 }
 
 void print_rules(const RuleSet& rules, ContextKind kind, bool json) {
@@ -240,12 +235,11 @@ class Pricing {
  private:
   void print_json(const std::string& rule, const RuleGain& reset, const RuleGain& carried_over,
                   double changed_share) const {
-    Json json = answer("rule_price");
-    json.set("rule", rule);
-    json.set(key::kGainOver, options_.policy);
-    json.set("split", options_.split);
-    json.set("days", days_.size());
-    json.set("share_of_decisions_changed", Decimals{changed_share, 6});
+    Json json = answer("rule_price", {{"rule", rule},
+                                      {key::kGainOver, options_.policy},
+                                      {"split", options_.split},
+                                      {"days", days_.size()},
+                                      {"share_of_decisions_changed", Decimals{changed_share, 6}}});
     reset.add_to(json, false);
     Json carried = Json::object();
     carried_over.add_to(carried, true);

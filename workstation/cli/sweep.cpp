@@ -197,13 +197,12 @@ void collect_sweep(const CollectArguments& options) {
   const std::size_t proved = count_of(tasks, TaskState::kProved);
   const std::size_t unproved = count_of(tasks, TaskState::kUnproved);
   if (options.json) {
-    Json json = answer("sweep_collect");
-    json.set("sweep", options.folder);
-    json.set("tasks", tasks.size());
-    json.set("proved", proved);
-    json.set("not_proved", unproved);
-    json.set("failed", count_of(tasks, TaskState::kFailed));
-    json.set("missing", count_of(tasks, TaskState::kMissing));
+    const Json json = answer("sweep_collect", {{"sweep", options.folder},
+                                               {"tasks", tasks.size()},
+                                               {"proved", proved},
+                                               {"not_proved", unproved},
+                                               {"failed", count_of(tasks, TaskState::kFailed)},
+                                               {"missing", count_of(tasks, TaskState::kMissing)}});
     fmt::print("{}\n", json.line());
   } else {
     fmt::print("{}: {}, {} proved, {} not proved\n", options.folder, counted(tasks.size(), "task"),

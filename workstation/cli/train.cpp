@@ -52,16 +52,15 @@ std::string identity_of(const RunConfig& config, const MinuteSeries& series,
 }
 
 std::string result_json(const fs::path& out, const RunConfig& config, const TrainResult& result) {
-  Json json = answer("teacher");
-  json.set("teacher", out.string());
-  json.set("method", method_name(config.train.method));
-  json.set("seed", config.train.seed);
-  json.set("steps", result.curve.back().step);
-  json.set("best_step", result.best_step);
-  json.set("validation_eur_per_day_per_mwh",
-           Decimals{result.best_validation_eur_per_day_per_mwh, 4});
-  json.set("seconds", Decimals{result.seconds, 2});
-  return json.line();
+  return answer("teacher", {{"teacher", out.string()},
+                            {"method", method_name(config.train.method)},
+                            {"seed", config.train.seed},
+                            {"steps", result.curve.back().step},
+                            {"best_step", result.best_step},
+                            {"validation_eur_per_day_per_mwh",
+                             Decimals{result.best_validation_eur_per_day_per_mwh, 4}},
+                            {"seconds", Decimals{result.seconds, 2}}})
+      .line();
 }
 
 /// Trains with the configuration's seed; keeps a checkpoint next to `out` until the end.

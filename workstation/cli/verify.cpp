@@ -29,11 +29,11 @@ struct VerifyArguments {
 
 void print_json(const std::string& name, const StudentFile& student, bool exhaustive) {
   const Certificate& c = student.certificate;
-  Json json = answer("proof");
-  json.set("student", name);
-  json.set("weights_hash", fmt::format("{:08x}", student_weights_hash(student.net)));
-  json.set("proof_method", exhaustive ? "exhaustive" : "bounds and enumeration");
-  json.set("proved", c.covers_lattice_without_violation());
+  Json json =
+      answer("proof", {{"student", name},
+                       {"weights_hash", fmt::format("{:08x}", student_weights_hash(student.net))},
+                       {"proof_method", exhaustive ? "exhaustive" : "bounds and enumeration"},
+                       {"proved", c.covers_lattice_without_violation()}});
   add_certificate(c, json);
   json.set("seconds", Decimals{c.seconds, 3});
   fmt::print("{}\n", json.line());

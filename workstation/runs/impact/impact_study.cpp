@@ -360,13 +360,11 @@ std::string format_impact_table(const ImpactPlan& plan, const std::vector<Impact
 std::string impact_csv(const std::vector<ImpactRow>& rows) { return table_of(rows).csv(); }
 
 Json impact_json(const ImpactPlan& plan, const std::vector<ImpactRow>& rows) {
-  Json json = answer("impact");
-  json.set("policies", Json::list_from(plan.policies));
-  json.set("seeds", plan.seeds);
-  json.set("train_days", plan.train_days);
-  json.set("test_days", plan.test_days);
-  json.set("fleets", table_of(rows).json());
-  return json;
+  return answer("impact", {{"policies", Json::list_from(plan.policies)},
+                           {"seeds", plan.seeds},
+                           {"train_days", plan.train_days},
+                           {"test_days", plan.test_days},
+                           {"fleets", table_of(rows).json()}});
 }
 
 void write_impact_page(const ImpactPlan& plan, const std::vector<ImpactRow>& rows,

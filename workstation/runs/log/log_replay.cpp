@@ -94,13 +94,12 @@ std::string LogReplay::text() const {
 }
 
 Json LogReplay::json() const {
-  Json json = answer("log_replay");
-  json.set("weights_hash", fmt::format("{:08x}", student_hash));
-  json.set("compared", compared);
-  json.set("differing", differing);
-  json.set("differing_percent", Decimals{differing_percent(), 4});
-  json.set("without_context", without_context);
-  json.set("gained_eur", Decimals{gained_eur, 4});
+  Json json = answer("log_replay", {{"weights_hash", fmt::format("{:08x}", student_hash)},
+                                    {"compared", compared},
+                                    {"differing", differing},
+                                    {"differing_percent", Decimals{differing_percent(), 4}},
+                                    {"without_context", without_context},
+                                    {"gained_eur", Decimals{gained_eur, 4}}});
   json.set("days", Json::list_from(days, [](const ReplayedDay& day) {
              return Json::object({{"date", day.date},
                                   {"compared", day.compared},

@@ -101,14 +101,12 @@ std::string size_csv(const SizeReport& report) { return table_of(report).csv(); 
 
 Json size_json(const SizeReport& report) {
   const Evaluation& traded = report.weighed.classes.front().traded;
-  Json json = answer("size");
-  json.set("policy", report.plan.policy);
-  json.set("window_days", report.plan.window_days);
-  json.set("days", traded.days.size());
-  json.set("months", traded.errors().months);
-  json.set("classes", report.weighed.classes.size());
-  json.set("cells", table_of(report).json());
-  return json;
+  return answer("size", {{"policy", report.plan.policy},
+                         {"window_days", report.plan.window_days},
+                         {"days", traded.days.size()},
+                         {"months", traded.errors().months},
+                         {"classes", report.weighed.classes.size()},
+                         {"cells", table_of(report).json()}});
 }
 
 void write_size_page(const SizeReport& report, const std::filesystem::path& folder) {
