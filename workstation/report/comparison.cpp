@@ -63,19 +63,16 @@ const NamedEvaluation* find_evaluation(const std::vector<NamedEvaluation>& evalu
 ComparisonRow comparison_row(const std::string& name, const Evaluation& evaluation,
                              const Evaluation* first, const Evaluation* foresight) {
   ComparisonRow row{.name = name,
-                    .carry_soc = false,
                     .days = evaluation.days.size(),
                     .profit = evaluation.profit_eur_per_day_per_mwh(),
                     .errors = evaluation.errors(),
                     .charge_left = evaluation.charge_left(),
                     .profit_at_reference_wear =
                         evaluation.profit_at_wear_eur_per_day_per_mwh(kReferenceWearEurPerMwh),
-                    .difference = std::nullopt,
                     .worst_day = evaluation.worst_day_eur_per_mwh(),
                     .cycles_per_day = evaluation.cycles_per_day(),
                     .switches_per_day = evaluation.switches_per_day(),
-                    .soc_end_frac_mean = evaluation.soc_end_mean(),
-                    .foresight_share = std::nullopt};
+                    .soc_end_frac_mean = evaluation.soc_end_mean()};
   if (first != nullptr) row.difference = paired_difference(evaluation, *first);
   const double bound = foresight == nullptr ? 0 : foresight->profit_eur_per_day_per_mwh();
   if (bound > 0) row.foresight_share = row.profit / bound;

@@ -37,19 +37,19 @@ inline constexpr double kReferenceWearEurPerMwh = 10;
 /// One row of a table, in EUR per day per MWh of capacity.
 struct ComparisonRow {
   std::string name;
-  bool carry_soc;
+  bool carry_soc = false;
   std::size_t days;
   double profit;
-  DayErrors errors;                            ///< of the profit
-  ChargeLeft charge_left;                      ///< of the profit
-  double profit_at_reference_wear;             ///< of the same decisions
-  std::optional<PairedDifference> difference;  ///< to the first policy; none for itself
-  std::string gain_over{};                     ///< name of the first policy
+  DayErrors errors;                              ///< of the profit
+  ChargeLeft charge_left;                        ///< of the profit
+  double profit_at_reference_wear;               ///< of the same decisions
+  std::optional<PairedDifference> difference{};  ///< to the first policy; none for itself
+  std::string gain_over{};                       ///< name of the first policy
   double worst_day;
   double cycles_per_day;
   double switches_per_day;
   double soc_end_frac_mean;
-  std::optional<double> foresight_share;  ///< of the foresight profit, if known and > 0
+  std::optional<double> foresight_share{};  ///< of the foresight profit, if known and > 0
 };
 
 /// Accounting of a table.

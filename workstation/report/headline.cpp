@@ -155,12 +155,7 @@ std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluati
                     .days = days.days.size(),
                     .profit = days.profit_eur_per_day_per_mwh(),
                     .errors = days.errors(),
-                    .reset_profit = {},
-                    .charge_left = days.charge_left(),
-                    .foresight_share = {},
-                    .correction = {},
-                    .rules = {},
-                    .gains = {}};
+                    .charge_left = days.charge_left()};
   if (!reset.days.empty()) headline.reset_profit = reset.profit_eur_per_day_per_mwh();
   const auto add = [&](const std::string& name, const std::string& meaning) {
     const NamedEvaluation* other = carried_over_by(evaluations, name);  // null if not evaluated

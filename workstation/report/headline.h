@@ -40,14 +40,14 @@ struct Headline {
   std::string student;  ///< kCorrectedName or kUnprovedName
   std::size_t days;
   double profit;
-  DayErrors errors;                    ///< of the profit
-  std::optional<double> reset_profit;  ///< day-reset accounting
-  ChargeLeft charge_left;              ///< part of the profit
-  std::optional<double> foresight_share;
-  std::optional<HeadlineGain>
-      correction;  ///< over the plain student under the rules: minus the cost of the correction
-  std::optional<HeadlineGain> rules;  ///< their effect on the plain student; none without rules
-  std::vector<HeadlineGain> gains;    ///< plain student first, foresight last
+  DayErrors errors;                      ///< of the profit
+  std::optional<double> reset_profit{};  ///< day-reset accounting
+  ChargeLeft charge_left;                ///< part of the profit
+  std::optional<double> foresight_share{};
+  /// Over the plain student under the rules: minus the cost of the correction.
+  std::optional<HeadlineGain> correction{};
+  std::optional<HeadlineGain> rules{};  ///< their effect on the plain student; none without rules
+  std::vector<HeadlineGain> gains{};    ///< plain student first, foresight last
 };
 
 /// The same decisions at another wear cost.
@@ -90,11 +90,11 @@ std::string under_rule_name(const std::string& rule);
 bool is_under_rules(std::string_view policy);
 
 struct RulePrices {
-  std::string student;              ///< kCorrectedName or kUnprovedName
-  std::vector<HeadlineGain> rules;  ///< plain student under one rule minus plain student
-  HeadlineGain together;            ///< plain student under all rules minus plain student
-  HeadlineGain correction;          ///< own student minus plain student under all rules
-  HeadlineGain total;               ///< own student minus plain student: the sum of both
+  std::string student;                ///< kCorrectedName or kUnprovedName
+  std::vector<HeadlineGain> rules{};  ///< plain student under one rule minus plain student
+  HeadlineGain together;              ///< plain student under all rules minus plain student
+  HeadlineGain correction;            ///< own student minus plain student under all rules
+  HeadlineGain total;                 ///< own student minus plain student: the sum of both
 };
 
 /// None without rules that can be projected.

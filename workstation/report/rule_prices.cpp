@@ -36,7 +36,6 @@ std::optional<RulePrices> rule_prices_of(const std::vector<NamedEvaluation>& eva
   const bool is_finished = exported->name == kCorrectedName;
   RulePrices prices{
       .student = exported->name,
-      .rules = {},
       .together = gain_over(*under_all, *plain, "all rules together"),
       .correction = gain_over(*exported, *under_all,
                               is_finished ? "the correction" : "the unfinished correction"),

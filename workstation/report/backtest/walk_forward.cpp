@@ -136,7 +136,7 @@ WalkForward walk_forward(const std::string& name, const Folds& folds, const Fold
                          const BatteryParameters& battery, double initial_soc_frac,
                          const MarketSteps& market, bool and_day_reset,
                          std::vector<StepRecord>* records) {
-  WalkForward result{.name = name, .total = {}, .months = {}, .by_month = {}};
+  WalkForward result{.name = name};
   EvaluationOptions options{battery, initial_soc_frac, true};
   for (const Fold& fold : folds.traded) {
     const std::shared_ptr<Policy> policy = make(fold);

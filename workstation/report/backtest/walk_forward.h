@@ -58,10 +58,10 @@ std::variant<Fold, SkippedMonth> make_fold(const MarketSteps& market, const std:
 /// Results of a policy, in order of days.
 struct WalkForward {
   std::string name;
-  Evaluation total;
-  std::vector<std::string> months;   ///< as in Folds::traded
-  std::vector<Evaluation> by_month;  ///< parallel to `months`
-  Evaluation day_reset{};            ///< day-reset accounting; empty unless requested
+  Evaluation total{};
+  std::vector<std::string> months{};   ///< as in Folds::traded
+  std::vector<Evaluation> by_month{};  ///< parallel to `months`
+  Evaluation day_reset{};              ///< day-reset accounting; empty unless requested
 
   /// Defined in evaluate.h, EUR per MWh of capacity.
   [[nodiscard]] double drawdown_eur_per_mwh() const;
