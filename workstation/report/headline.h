@@ -76,9 +76,9 @@ Json headline_json(const Headline& headline);
 /// Head of the page: result, badges, gains. Escaped.
 std::string headline_html(const Headline& headline);
 
-// Cost of the correction, split by operator rule (rule_prices.cpp). The cost of a rule is that of
-// moving the plain student's decisions to the nearest allowed ones (ruled_policy.h), for each rule
-// and all together; the difference to the corrected student is the cost of the correction itself.
+// Cost of the correction, split by operator rule. The cost of a rule is that of moving the plain
+// student's decisions to the nearest allowed ones (ruled_policy.h), for each rule and all together;
+// the difference to the corrected student is the cost of the correction itself.
 
 /// Null if missing, or without carried-over days.
 const NamedEvaluation* carried_over_by(const std::vector<NamedEvaluation>& evaluations,
