@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <functional>
 
 #include "shared/battery_keys.h"
@@ -20,10 +21,6 @@ struct Key {
   std::function<void(TomlTable&)> read;
   std::function<std::string()> get;
   bool is_learning = true;  ///< else of evaluation alone
-
-  [[nodiscard]] std::pair<std::string, std::string> entry() const {
-    return {fmt::format("[{}] {}", section, name), get()};
-  }
 };
 
 /// Keys bound to the fields of one configuration.
@@ -284,16 +281,8 @@ Entries config_entries(const RunConfig& config) {
   RunConfig copy = config;
   const KeyList list(copy);
   Entries entries;
-  for (const Key& key : list.keys()) entries.push_back(key.entry());
-  return entries;
-}
-
-Entries learning_entries(const RunConfig& config) {
-  RunConfig copy = config;
-  const KeyList list(copy);
-  Entries entries;
   for (const Key& key : list.keys()) {
-    if (key.is_learning) entries.push_back(key.entry());
+    entries.emplace_back(fmt::format("[{}] {}", key.section, key.name), key.get());
   }
   return entries;
 }
@@ -311,6 +300,51 @@ std::string format_run_config(const RunConfig& config) {
     text += fmt::format("{} = {}  # {}\n", key.name, key.get(), key.comment);
   }
   return text;
+}
+
+std::vector<ChangedKey> changed_keys(const RunConfig& config) {
+  const auto here = config_entries(config);
+  const auto standard = config_entries(RunConfig{});
+  std::vector<ChangedKey> changed;
+  for (std::size_t k = 0; k < here.size(); ++k) {
+    if (here[k].second == standard[k].second) continue;
+    changed.push_back({here[k].first, here[k].second, standard[k].second});
+  }
+  return changed;
+}
+
+std::string changed_keys_text(const RunConfig& config) {
+  std::string text;
+  for (const ChangedKey& changed : changed_keys(config)) {
+    text += fmt::format("{}{} = {} (default {})", text.empty() ? "" : "; ", changed.key,
+                        changed.value, changed.standard);
+  }
+  return text.empty() ? "none: every key has its default" : text;
+}
+
+RunConfig canonical(RunConfig config, double rate_step_percent) {
+  double rate_per_h = config.battery.power_w_max / config.battery.capacity_wh;
+  if (rate_step_percent > 0) {
+    const double step = std::log1p(rate_step_percent / 100);
+    rate_per_h = std::exp(step * std::round(std::log(rate_per_h) / step));
+  }
+  const double scale = BatteryParameters{}.capacity_wh / config.battery.capacity_wh;
+  config.battery.standby_w *= scale;
+  config.battery.response.ramp_w_per_s *= scale;
+  config.battery.capacity_wh = BatteryParameters{}.capacity_wh;
+  config.battery.power_w_max =
+      std::stod(fmt::format("{:.12g}", rate_per_h)) * config.battery.capacity_wh;
+  return config;
+}
+
+std::string learning_key(const RunConfig& config, const std::string& rules) {
+  RunConfig copy = config;
+  const KeyList list(copy);
+  std::string text;
+  for (const Key& key : list.keys()) {
+    if (key.is_learning) text += fmt::format("[{}] {} = {}\n", key.section, key.name, key.get());
+  }
+  return text + rules;
 }
 
 }  // namespace bess

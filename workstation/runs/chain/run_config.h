@@ -53,8 +53,6 @@ void warn_long_training(const RunConfig& config);
 
 /// Every key as "[section] name", with its value in TOML.
 Entries config_entries(const RunConfig& config);
-/// The keys that change a student; the others are of evaluation alone.
-Entries learning_entries(const RunConfig& config);
 
 /// Configuration as commented TOML; reading it gives the same values.
 std::string format_run_config(const RunConfig& config);
@@ -73,15 +71,16 @@ std::vector<ChangedKey> changed_keys(const RunConfig& config);
 /// "[market] observation_delay_min = 2 (default 1); ...", or that all keys have their default.
 std::string changed_keys_text(const RunConfig& config);
 
-// Learning class (learning_class.cpp): configurations with the same student. The battery is scaled
-// to the default capacity at its C-rate, so that 4 MW / 8 MWh and 4 kW / 8 kWh, whose students
-// would differ only by rounding, are one class.
+// Learning class: configurations with the same student. The battery is scaled to the default
+// capacity at its C-rate, so that 4 MW / 8 MWh and 4 kW / 8 kWh, whose students would differ only
+// by rounding, are one class.
 
 /// `config` at the canonical size, with the C-rate rounded to twelve digits. With a step it becomes
 /// the nearest of 1, 1 + step, (1 + step)^2, ... and their reciprocals.
 RunConfig canonical(RunConfig config, double rate_step_percent = 0);
 
-/// Learning keys of a configuration, one per line, and rules.
+/// Keys of a configuration that change a student, one per line, and rules; the other keys are of
+/// evaluation alone.
 std::string learning_key(const RunConfig& config, const std::string& rules);
 
 }  // namespace bess
