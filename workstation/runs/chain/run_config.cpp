@@ -302,13 +302,13 @@ std::string format_run_config(const RunConfig& config) {
   return text;
 }
 
-std::vector<ChangedKey> changed_keys(const RunConfig& config) {
-  const auto here = config_entries(config);
-  const auto standard = config_entries(RunConfig{});
+std::vector<ChangedKey> changed_keys(const RunConfig& config, const RunConfig& standard) {
+  const Entries here = config_entries(config);
+  const Entries there = config_entries(standard);
   std::vector<ChangedKey> changed;
   for (std::size_t k = 0; k < here.size(); ++k) {
-    if (here[k].second == standard[k].second) continue;
-    changed.push_back({here[k].first, here[k].second, standard[k].second});
+    if (here[k].second == there[k].second) continue;
+    changed.push_back({here[k].first, here[k].second, there[k].second});
   }
   return changed;
 }

@@ -57,7 +57,7 @@ Entries config_entries(const RunConfig& config);
 /// Configuration as commented TOML; reading it gives the same values.
 std::string format_run_config(const RunConfig& config);
 
-// Differences of a configuration from the defaults.
+// Differences of a configuration from another one.
 
 struct ChangedKey {
   std::string key;  ///< "[section] name"
@@ -66,7 +66,7 @@ struct ChangedKey {
 };
 
 /// In the order of the list of keys; without seed, threads and rules.
-std::vector<ChangedKey> changed_keys(const RunConfig& config);
+std::vector<ChangedKey> changed_keys(const RunConfig& config, const RunConfig& standard = {});
 
 /// "[market] observation_delay_min = 2 (default 1); ...", or that all keys have their default.
 std::string changed_keys_text(const RunConfig& config);

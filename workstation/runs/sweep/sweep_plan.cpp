@@ -317,12 +317,8 @@ Entries class_settings(const SiteClass& one, const RunConfig& base, SweepPlan& p
   Entries settings;
   if (!one.rules.empty()) settings.emplace_back(setting::kRules, keep_rules(plan, one.rules));
   settings.emplace_back(setting::kClass, one.name);
-  const Entries here = config_entries(one.config);
-  const Entries there = config_entries(base);
-  for (std::size_t k = 0; k < here.size(); ++k) {
-    if (here[k].second != there[k].second) {
-      settings.emplace_back(dotted(here[k].first), here[k].second);
-    }
+  for (const ChangedKey& changed : changed_keys(one.config, base)) {
+    settings.emplace_back(dotted(changed.key), changed.value);
   }
   return settings;
 }
