@@ -2,7 +2,6 @@
 #include <fmt/core.h>
 
 #include <memory>
-#include <optional>
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
@@ -18,32 +17,28 @@ namespace {
 
 void run_report(const std::string& path, const std::string& prices) {
   const RunFolder folder{path};
-  std::optional<RunRecord> record = load_run_record(folder);
-  if (!record) {
-    fail("{}: no run here ({} is missing); create one with 'bess-train run --out {}'", path,
-         run_file::kRecord, path);
-  }
+  RunRecord record = existing_run_record(folder);
   std::vector<NamedPath> outputs;
   for (const std::string& name : RunStages::files())
     outputs.push_back({"--run", folder.file(name)});
-  if (record->prices != run_file::kSimulatedPrices) {
+  if (record.prices != run_file::kSimulatedPrices) {
     require_distinct(outputs, {{"--prices", prices}});
   }
   // Findings were already accepted or rejected when the run was made.
   const MinuteSeries series = prices.empty()
-                                  ? prices_of_run(*record, folder, AcceptedFindings::all())
+                                  ? prices_of_run(record, folder, AcceptedFindings::all())
                                   : read_judged_minutes(prices, AcceptedFindings::all());
-  if (const std::string hash = prices_hash(series); hash != record->value("prices")) {
+  if (const std::string hash = prices_hash(series); hash != record.value("prices")) {
     fail("{}: not the prices of this run: {}, but the run has {}; give its file with --prices",
-         prices.empty() ? record->prices : prices, hash, record->value("prices"));
+         prices.empty() ? record.prices : prices, hash, record.value("prices"));
   }
-  if (!record->day_ahead.empty() &&
-      file_mark(folder.path / record->day_ahead) != record->value(kDayAheadKey)) {
+  if (!record.day_ahead.empty() &&
+      file_mark(folder.path / record.day_ahead) != record.value(kDayAheadKey)) {
     fail("{}: not the day-ahead prices of this run, which has {}; restore the file",
-         record->day_ahead, record->value(kDayAheadKey));
+         record.day_ahead, record.value(kDayAheadKey));
   }
   const FolderLock lock(folder.path);
-  RunStages stages(folder, std::move(*record), series, stderr);
+  RunStages stages(folder, std::move(record), series, stderr);
   stages.report_again();
   fmt::print("{}\n{}/report.html\n", stages.summary(), path);
 }

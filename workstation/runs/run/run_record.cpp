@@ -202,6 +202,13 @@ std::optional<RunRecord> load_run_record(const RunFolder& folder) {
   return record;
 }
 
+RunRecord existing_run_record(const RunFolder& folder) {
+  std::optional<RunRecord> record = load_run_record(folder);
+  if (record) return std::move(*record);
+  fail("{}: no run here ({} is missing); create one with 'bess-train run --out {}'",
+       folder.path.string(), run_file::kRecord, folder.path.string());
+}
+
 void save_run_record(const RunFolder& folder, const RunRecord& record) {
   Json json = Json::object({{"prices", record.prices}, {"prices_name", record.prices_name}});
   if (!record.teacher_file.empty()) json.set("teacher_file", record.teacher_file);

@@ -129,6 +129,8 @@ Entries circumstances_of(const Entries& identity);
 
 /// None without run.json. Throws UserError when it is malformed or of another version.
 std::optional<RunRecord> load_run_record(const RunFolder& folder);
+/// The same; throws UserError with a remedy when there is none.
+RunRecord existing_run_record(const RunFolder& folder);
 void save_run_record(const RunFolder& folder, const RunRecord& record);
 
 }  // namespace bess

@@ -244,26 +244,22 @@ std::vector<std::string> differing_keys(const std::vector<const RunRecord*>& run
 }
 
 RunSummary load_run_summary(const RunFolder& folder) {
-  std::optional<RunRecord> record = load_run_record(folder);
+  RunRecord record = existing_run_record(folder);
   const std::string name = folder.path.string();
-  if (!record) {
-    fail("{}: no run here ({} is missing); create one with 'bess-train run --out {}'", name,
-         run_file::kRecord, name);
-  }
-  if (!record->figures && record->has_failed()) {
+  if (!record.figures && record.has_failed()) {
     fail(
         "{}: ended without a proof, see {}; repeat the correction with 'bess-train run "
         "--from-teacher {} --config NEW --out ANOTHER'",
         name, folder.file(run_file::kReport).string(), name);
   }
-  if (!record->figures) {
+  if (!record.figures) {
     fail("{}: not finished, {}; continue with 'bess-train run --resume --out {}'", name,
-         record->state(), name);
+         record.state(), name);
   }
-  require_unchanged(*record, folder);
+  require_unchanged(record, folder);
   const std::string days = folder.file(run_file::kDays).string();
-  const RunConfig config = record->config(folder);
-  return {folder, std::move(*record),
+  const RunConfig config = record.config(folder);
+  return {folder, std::move(record),
           parse_evaluation_days_csv(read_file(days), days, config.battery)};
 }
 

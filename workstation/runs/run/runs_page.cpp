@@ -132,9 +132,7 @@ SortTable settings_table(const std::vector<RunLine>& runs) {
 }  // namespace
 
 RunLine load_run_line(const RunFolder& folder) {
-  std::optional<RunRecord> record = load_run_record(folder);
-  if (!record) return {folder, load_run_summary(folder).record, {}, {}};  // throws with a remedy
-  RunLine line{folder, std::move(*record), {}, {}};
+  RunLine line{folder, existing_run_record(folder), {}, {}};
   if (!line.record.figures) return line;
   try {
     line.summary = load_run_summary(folder);
