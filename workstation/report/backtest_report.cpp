@@ -102,17 +102,20 @@ std::string chart_caption(const BacktestResults& results) {
       fall_text((*best)->drawdown_eur_per_mwh()));
 }
 
-/// Price regimes of months whose fold crosses a regime boundary.
-std::vector<std::string> crossing_lines(const BacktestResults& results) {
-  std::vector<std::string> lines;
+/// Price regimes of months whose fold crosses a regime boundary, and months that are not traded.
+std::vector<std::string> month_notes(const BacktestResults& results) {
+  std::vector<std::string> notes;
   for (std::size_t m = 0; m < results.regimes.size(); ++m) {
     const FoldRegimes& of = results.regimes[m];
     if (!of.crosses()) continue;
-    lines.push_back(fmt::format("{} crosses a price regime boundary: fitted on {}; traded in {}",
+    notes.push_back(fmt::format("{} crosses a price regime boundary: fitted on {}; traded in {}",
                                 results.policies.front().months[m], regime_names(of.fitted),
                                 regime_names(of.traded)));
   }
-  return lines;
+  for (const SkippedMonth& month : results.skipped) {
+    notes.push_back(fmt::format("{} is not traded: {}", month.month, month.reason));
+  }
+  return notes;
 }
 
 Json names_json(const std::vector<const PriceRegime*>& regimes) {
@@ -166,15 +169,10 @@ std::string day_reset_html(const BacktestResults& results) {
                       table.only(std::string("policy,") + kDayResetKeys));
 }
 
-/// Months that cross a regime boundary or are not traded.
 std::string months_html(const BacktestResults& results) {
   std::string text;
-  for (const std::string& line : crossing_lines(results)) {
-    text += fmt::format("<li>{}</li>\n", html_escaped(line));
-  }
-  for (const SkippedMonth& month : results.skipped) {
-    text += fmt::format("<li>{} is not traded: {}</li>\n", html_escaped(month.month),
-                        html_escaped(month.reason));
+  for (const std::string& note : month_notes(results)) {
+    text += fmt::format("<li>{}</li>\n", html_escaped(note));
   }
   return text.empty() ? text : fmt::format("<ul class=\"note\">\n{}</ul>\n", text);
 }
@@ -199,10 +197,7 @@ std::string format_backtest_table(const BacktestResults& results) {
       first.name, by_month_meaning(first.total.errors().months),
       charge_left_meaning(first.total.charge_price_eur_per_mwh), kReferenceWearHead,
       reference_wear_meaning(first.total.wear_eur_per_mwh));
-  for (const std::string& line : crossing_lines(results)) text += line + "\n";
-  for (const SkippedMonth& month : results.skipped) {
-    text += fmt::format("{} is not traded: {}\n", month.month, month.reason);
-  }
+  for (const std::string& note : month_notes(results)) text += note + "\n";
   return text;
 }
 
