@@ -262,9 +262,14 @@ RunConfig cell_config(const RunConfig& base, double power_w, double capacity_wh,
 
 SizeCells evaluate_cells(const SizePlan& plan, const RunConfig& base,
                          const SizeBacktest& backtest) {
+  struct Place {
+    double power_w, capacity_wh;
+    const SizeContract& contract;
+    std::size_t class_index;
+  };
+  std::vector<Place> places;
   std::vector<RunConfig> configs;
   std::map<std::string, std::size_t> by_key;
-  std::vector<std::size_t> class_of;
   for (const double power_w : plan.power_w) {
     for (const double capacity_wh : plan.capacity_wh) {
       for (const SizeContract& contract : plan.contracts) {
@@ -273,18 +278,13 @@ SizeCells evaluate_cells(const SizePlan& plan, const RunConfig& base,
         const RunConfig config = canonical(own);
         const auto [at, is_new] = by_key.try_emplace(learning_key(config, ""), configs.size());
         if (is_new) configs.push_back(config);
-        class_of.push_back(at->second);
+        places.push_back({power_w, capacity_wh, contract, at->second});
       }
     }
   }
   SizeCells all{{}, trade_classes(configs, backtest)};
-  auto of = class_of.begin();
-  for (const double power_w : plan.power_w) {
-    for (const double capacity_wh : plan.capacity_wh) {
-      for (const SizeContract& contract : plan.contracts) {
-        all.cells.push_back(size_cell(plan, contract, all.classes[*of++], power_w, capacity_wh));
-      }
-    }
+  for (const auto& [power_w, capacity_wh, contract, class_index] : places) {
+    all.cells.push_back(size_cell(plan, contract, all.classes[class_index], power_w, capacity_wh));
   }
   return all;
 }
@@ -302,33 +302,28 @@ SizeCell size_cell(const SizePlan& plan, const SizeContract& contract, const Siz
                 .error_eur_per_year = day_errors(cash).by_month * days_of_cell,
                 .cycles_per_day = of.traded.cycles_per_day(),
                 .share_of_foresight = of.share_of_foresight,
-                .price_eur = plan.purchase.price_eur(power_w, capacity_wh),
-                .life_years = 0,
-                .pay_back_years = NAN,
-                .life_eur = 0};
-  const BatteryLifetime life = lifetime_of(cell, plan.ageing);
-  cell.life_years = life.years;
-  cell.pay_back_years = life.pay_back_years;
-  cell.life_eur = life.eur;
+                .price_eur = plan.purchase.price_eur(power_w, capacity_wh)};
+  add_lifetime(cell, plan.ageing);
   return cell;
 }
 
-BatteryLifetime lifetime_of(const SizeCell& cell, const Ageing& ageing) {
-  BatteryLifetime life{0, NAN, -cell.price_eur};
+void add_lifetime(SizeCell& cell, const Ageing& ageing) {
+  cell.life_years = 0;
+  cell.pay_back_years = NAN;
+  cell.life_eur = -cell.price_eur;
   double capacity = 1;  // of the initial capacity
   const double cycles = cell.cycles_per_day * kDaysPerYear / kMonthsPerYear;
   for (int month = 0; month < kLifeMonthsMax && capacity > ageing.end_percent / 100; ++month) {
     const double eur =
         (cell.margin_eur_per_year * capacity - cell.fixed_eur_per_year) / kMonthsPerYear;
-    if (life.eur < 0 && life.eur + eur >= 0) {
-      life.pay_back_years = (month - life.eur / eur) / kMonthsPerYear;
+    if (cell.life_eur < 0 && cell.life_eur + eur >= 0) {
+      cell.pay_back_years = (month - cell.life_eur / eur) / kMonthsPerYear;
     }
-    life.eur += eur;
-    life.years = (month + 1.0) / kMonthsPerYear;
+    cell.life_eur += eur;
+    cell.life_years = (month + 1.0) / kMonthsPerYear;
     capacity -= ageing.calendar_percent_per_year / 100 / kMonthsPerYear +
                 ageing.cycle_percent_per_1000 / 100 * cycles * capacity / 1000;
   }
-  return life;
 }
 
 const SizeCell& best_of(const std::vector<SizeCell>& cells) {

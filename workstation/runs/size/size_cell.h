@@ -98,9 +98,9 @@ struct SizeCell {
   double cycles_per_day;
   double share_of_foresight;
   double price_eur;
-  double life_years;      ///< until replacement
-  double pay_back_years;  ///< NaN: not within its lifetime, or no price
-  double life_eur;        ///< earnings over the lifetime less the price
+  double life_years = 0;      ///< until replacement
+  double pay_back_years = 0;  ///< NaN: not within its lifetime, or no price
+  double life_eur = 0;        ///< earnings over the lifetime less the price
 
   [[nodiscard]] double eur_per_year() const { return margin_eur_per_year - fixed_eur_per_year; }
   [[nodiscard]] double eur_per_kwh_year() const { return eur_per_year() / (capacity_wh / 1e3); }
@@ -124,11 +124,9 @@ SizeCell size_cell(const SizePlan& plan, const SizeContract& contract, const Siz
 /// Throws UserError.
 SizeCells evaluate_cells(const SizePlan& plan, const RunConfig& base, const SizeBacktest& backtest);
 
-/// Lifetime result by month: the margin falls with the remaining capacity, fixed costs do not.
-struct BatteryLifetime {
-  double years, pay_back_years, eur;
-};
-BatteryLifetime lifetime_of(const SizeCell& cell, const Ageing& ageing);
+/// Computes the lifetime and its result by month: the margin falls with the remaining capacity,
+/// fixed costs do not.
+void add_lifetime(SizeCell& cell, const Ageing& ageing);
 
 /// Shortest payback; if none pays back, the highest lifetime result per EUR of price; without
 /// prices, the highest yearly earnings per kWh.

@@ -125,16 +125,17 @@ TEST(Size, ABatteryPaysBackWhileItAges) {
   cell.price_eur = 100;
   cell.cycles_per_day = 0;
   // 12 % a year, 1 % a month of what was bought: it ends at 97 % after three months of 50, 49, 48.
-  BatteryLifetime life = lifetime_of(cell, {12, 0, 97.5});
-  EXPECT_NEAR(life.years, 3 / 12.0, 1e-9);
-  EXPECT_NEAR(life.eur, -100 + 50 + 49 + 48, 1e-9);
-  EXPECT_NEAR(life.pay_back_years, (2 + 1 / 48.0) / 12, 1e-9);
+  add_lifetime(cell, {12, 0, 97.5});
+  EXPECT_NEAR(cell.life_years, 3 / 12.0, 1e-9);
+  EXPECT_NEAR(cell.life_eur, -100 + 50 + 49 + 48, 1e-9);
+  EXPECT_NEAR(cell.pay_back_years, (2 + 1 / 48.0) / 12, 1e-9);
   cell.price_eur = 1000;
-  EXPECT_TRUE(std::isnan(lifetime_of(cell, {12, 0, 97.5}).pay_back_years));
+  add_lifetime(cell, {12, 0, 97.5});
+  EXPECT_TRUE(std::isnan(cell.pay_back_years));
   // By full cycles alone: 1,000 of them in a month take 10 % of the rest.
   cell.cycles_per_day = 1000 * 12 / 365.25;
-  life = lifetime_of(cell, {0, 10, 80});
-  EXPECT_NEAR(life.years, 3 / 12.0, 1e-9) << "90 %, 81 %, 72.9 %";
+  add_lifetime(cell, {0, 10, 80});
+  EXPECT_NEAR(cell.life_years, 3 / 12.0, 1e-9) << "90 %, 81 %, 72.9 %";
 }
 
 /// A quarter-hour ends inside a step: each has one of its minutes.
