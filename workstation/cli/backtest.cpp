@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "shared/host/file.h"
+#include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/base/parallel_for.h"
 #include "workstation/base/progress.h"
@@ -191,8 +192,8 @@ void run_backtest(const BacktestArguments& options) {
                           std::move(fitted_days),
                           folds.skipped,
                           options.plan.window_days,
-                          fmt::format("{} on {} file{}, prices {:08x}, seed {}", BESS_VERSION,
-                                      options.prices.size(), options.prices.size() == 1 ? "" : "s",
+                          fmt::format("{} on {}, prices {:08x}, seed {}", BESS_VERSION,
+                                      counted(options.prices.size(), "file"),
                                       prices_checksum(series), config.train.seed),
                           learning_identity(prices_hash(series), config),
                           std::move(regimes)};

@@ -6,6 +6,7 @@
 
 #include "shared/host/file.h"
 #include "shared/host/json.h"
+#include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/base/answer.h"
 #include "workstation/cli/commands.h"
@@ -50,9 +51,9 @@ void print_result(const DistilArguments& options, const CorrectionResult& result
     fmt::print("{}\n", json.line());
     return;
   }
-  fmt::print("{}: {} states checked, violations {} / {} / {} after {} round{}\n", options.out,
-             c.states_checked, c.violations_of(1), c.violations_of(2), c.violations_of(3), rounds,
-             rounds == 1 ? "" : "s");
+  fmt::print("{}: {} states checked, violations {} / {} / {} after {}\n", options.out,
+             c.states_checked, c.violations_of(1), c.violations_of(2), c.violations_of(3),
+             counted(rounds, "round"));
   fmt::print("{}", rule_count_lines(c));
 }
 

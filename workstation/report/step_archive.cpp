@@ -24,7 +24,7 @@ static_assert(1'000'000 * kMilliPerEur < std::numeric_limits<std::int32_t>::max(
 template <typename Number, typename Items, typename Value>
 void append(const Items& items, Value value, std::string& bytes) {
   for (const auto& item : items) {
-    const auto number = static_cast<Number>(value(item));
+    const auto number = static_cast<Number>(std::invoke(value, item));
     bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
   }
 }
@@ -51,14 +51,11 @@ void append_market(std::span<const MarketStep> steps, const ClassOfStep& class_o
 
 void append_policy(std::span<const StepRecord> records, std::string& bytes) {
   using Record = const StepRecord&;
-  append<float>(
-      records, [](Record r) { return r.profit_eur; }, bytes);
-  append<float>(
-      records, [](Record r) { return r.power_w; }, bytes);
+  append<float>(records, &StepRecord::profit_eur, bytes);
+  append<float>(records, &StepRecord::power_w, bytes);
   append<std::int16_t>(
       records, [](Record r) { return std::lround(r.soc_frac * kSocFullE4); }, bytes);
-  append<std::int8_t>(
-      records, [](Record r) { return r.action; }, bytes);
+  append<std::int8_t>(records, &StepRecord::action, bytes);
 }
 
 std::string deflated(const std::string& bytes) {

@@ -12,6 +12,7 @@
 #include "shared/host/csv.h"
 #include "shared/host/file.h"
 #include "shared/host/json.h"
+#include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
 #include "workstation/correction/student/certificate.h"
@@ -374,10 +375,10 @@ RunStages::Names RunStages::make_corrected_student() {
     return {kUnprovedStudent, kUnprovedViolations, kDistilCurve, kProofRounds, kCheckpoints};
   }
   save_student(path(kStudent), student);
-  const std::size_t rounds = corrected.rounds.size();
   proved_ = *proved;
-  report_line(fmt::format("proved: no violation in {} states, {} round{}",
-                          student.certificate.states_checked, rounds, rounds == 1 ? "" : "s"));
+  report_line(fmt::format("proved: no violation in {} states, {}",
+                          student.certificate.states_checked,
+                          counted(corrected.rounds.size(), "round")));
   return {kStudent, kDistilCurve, kProofRounds, kCheckpoints};
 }
 
