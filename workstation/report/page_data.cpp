@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "shared/utc_text.h"
+#include "workstation/correction/rules/rule.h"
 #include "workstation/correction/student/student_policy.h"
 #include "workstation/data/env/context_fit.h"
 #include "workstation/report/figures/curves.h"
@@ -55,13 +56,19 @@ Json rule_json(const Rule& rule, ContextKind kind) {
   return json;
 }
 
-}  // namespace
-
+/// Operator rules for the page (page/rule_boxes.js): region on the lattice, demand and scope.
+/// One object per rule, in order:
+///   name, text, held_by, binds_student
+///   hours      [first quarter-hour, count], may pass midnight
+///   classes    bit c - 1 of the student's context; all if the student has no month input
+///   soc        [first, last] lattice index
+///   price      [first, last] EUR/MWh of the lattice; omitted for a rule outside it
+///   forbidden  actions that break it; omitted for rules on pairs of states and for thresholds
+///              (properties 1 and 2)
+///   direction  {input, sign} as in Direction; only for such rules, which have no box
 Json rules_json(const RuleSet& rules, ContextKind kind) {
   return Json::list_from(rules.rules, [kind](const Rule& rule) { return rule_json(rule, kind); });
 }
-
-namespace {
 
 /// Calls `look` with each step on the page and its index among all records.
 template <typename Look>
@@ -98,6 +105,30 @@ PictureTable step_table(const RunResults& in, const PageSteps& steps) {
     table.rows.push_back(std::move(row));
   });
   return table;
+}
+
+constexpr int kNoonQuarterHour = 48;
+constexpr int kMiddleMinute = 7;
+
+/// Class of a step; by outlook for a battery in the middle of its SoC window.
+int context_class_of(const RunResults& in, const MarketStep& step) {
+  const StudentFile& student = in.corrected;
+  const double middle_frac = 0.5 * (in.battery.soc_min_frac + in.battery.soc_max_frac);
+  return student.net.context.class_of(
+      step.month, student.outlook ? student.outlook->break_even_centi(step, middle_frac)
+                                  : step.level_centi_eur_per_mwh);
+}
+
+/// Initial state of the map: most frequent class of the test days, at noon.
+PolicyContext first_map(const RunResults& in) {
+  std::array<std::size_t, kContextClassCount + 1> steps{};
+  for (const MarketDay& day : in.market.days_of(Split::kTest)) {
+    for (const MarketStep& step : in.market.of(day)) {
+      ++steps[static_cast<std::size_t>(context_class_of(in, step))];
+    }
+  }
+  const auto most = std::max_element(steps.begin() + 1, steps.end()) - steps.begin();
+  return {static_cast<int>(most), kNoonQuarterHour, kMiddleMinute};
 }
 
 /// One row per interval of prices with the same action, at each SoC.
@@ -148,8 +179,6 @@ namespace {
 
 constexpr double kWattHoursPerMegawattHour = 1e6;
 constexpr std::size_t kCounterexamplesShown = 200;
-constexpr int kNoonQuarterHour = 48;
-constexpr int kMiddleMinute = 7;
 
 Json policies_json(const std::vector<NamedEvaluation>& evaluations) {
   Json list = Json::list();
@@ -205,15 +234,6 @@ std::vector<double> against_foresight(const RunResults& in, std::vector<double> 
     profits[d] -= bound->day_reset.days[d].profit_eur;
   }
   return profits;
-}
-
-/// Class of a step; by outlook for a battery in the middle of its SoC window.
-int context_class_of(const RunResults& in, const MarketStep& step) {
-  const StudentFile& student = in.corrected;
-  const double middle_frac = 0.5 * (in.battery.soc_min_frac + in.battery.soc_max_frac);
-  return student.net.context.class_of(
-      step.month, student.outlook ? student.outlook->break_even_centi(step, middle_frac)
-                                  : step.level_centi_eur_per_mwh);
 }
 
 Json archive_json(const RunResults& in, const PageSteps& steps) {
@@ -329,6 +349,13 @@ Json learning_json(const RunResults& in) {
                        {"distil", std::move(distil)}});
 }
 
+/// Name and colour of each baseline drawn with the exported policy.
+Json rivals_json() {
+  return Json::list_from(rival_names(), [](const std::string& name) {
+    return Json::object({{"name", name}, {"colour", find_baseline(name)->colour}});
+  });
+}
+
 Json prices_json(const MarketSteps& market) {
   const PriceHistogram histogram = price_histogram(market);
   return Json::object({{"low", histogram.low},
@@ -371,24 +398,6 @@ PageSteps page_steps(const RunResults& in) {
   steps.kept = days_with_steps(
       against_foresight(in, profits_by_day(steps.days, steps.policies.front())), kDaysWithSteps);
   return steps;
-}
-
-PolicyContext first_map(const RunResults& in) {
-  std::array<std::size_t, kContextClassCount + 1> steps{};
-  for (const MarketDay& day : in.market.days_of(Split::kTest)) {
-    for (const MarketStep& step : in.market.of(day)) {
-      ++steps[static_cast<std::size_t>(context_class_of(in, step))];
-    }
-  }
-  const auto most = std::max_element(steps.begin() + 1, steps.end()) - steps.begin();
-  return {static_cast<int>(most), kNoonQuarterHour, kMiddleMinute};
-}
-
-/// Name and colour of each baseline drawn with the exported policy.
-Json rivals_json() {
-  return Json::list_from(rival_names(), [](const std::string& name) {
-    return Json::object({{"name", name}, {"colour", find_baseline(name)->colour}});
-  });
 }
 
 Json page_data(const RunResults& in, const PageSteps& steps) {

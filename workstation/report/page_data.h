@@ -7,24 +7,10 @@
 #include <vector>
 
 #include "shared/host/json.h"
-#include "workstation/correction/rules/rule.h"
 #include "workstation/report/figures/picture_table.h"
 #include "workstation/report/report.h"
 
 namespace bess {
-
-// Operator rules for the page (page/rule_boxes.js): region on the lattice, demand and scope.
-
-/// One object per rule, in order:
-///   name, text, held_by, binds_student
-///   hours      [first quarter-hour, count], may pass midnight
-///   classes    bit c - 1 of the student's context; all if the student has no month input
-///   soc        [first, last] lattice index
-///   price      [first, last] EUR/MWh of the lattice; omitted for a rule outside it
-///   forbidden  actions that break it; omitted for rules on pairs of states and for thresholds
-///              (properties 1 and 2)
-///   direction  {input, sign} as in Direction; only for such rules, which have no box
-Json rules_json(const RuleSet& rules, ContextKind kind);
 
 // Archive of steps (step_archive.cpp): prices, and actions of each policy; page/archive.js unpacks
 // it. A day is one block of consecutive little-endian arrays:
@@ -66,9 +52,6 @@ struct PageSteps {
   std::vector<std::size_t> kept;      ///< indices of the days on the page, ascending
 };
 PageSteps page_steps(const RunResults& run);
-
-/// Initial state of the map: most frequent class of the test days, at noon.
-PolicyContext first_map(const RunResults& run);
 
 Json page_data(const RunResults& run, const PageSteps& steps);
 
