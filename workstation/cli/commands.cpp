@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "workstation/report/figures/page_files.h"
+#include "workstation/report/figures/html.h"
 #include "workstation/runs/chain/run_config.h"
 
 namespace bess {

@@ -16,7 +16,6 @@
 #include "workstation/report/figures/html.h"
 #include "workstation/report/figures/picture_table.h"
 #include "workstation/report/figures/policy_map.h"
-#include "workstation/report/report_page.h"
 
 namespace bess {
 namespace {

@@ -15,7 +15,6 @@
 #include "workstation/report/foresight_gap.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/page_data.h"
-#include "workstation/report/report_page.h"
 
 namespace bess {
 namespace {

@@ -1,14 +1,23 @@
-// HTML pages: style sheet and tables.
+// HTML pages: static files, tables, pages of text, and the report page.
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "shared/host/json.h"
 #include "shared/host/text.h"
 #include "workstation/base/table.h"
 
 namespace bess {
+
+// Static files of the page, embedded into the program (page/page.cmake), so that a page is one
+// self-contained file.
+
+/// Contents of report/page/`name`, of "chart.min.js" or "answers.schema.json". Throws
+/// std::logic_error for another name.
+std::string_view page_file(std::string_view name);
 
 /// Text of an empty cell.
 inline constexpr const char* kNoValue = "\u2013";
@@ -50,10 +59,27 @@ struct SortTable {
 SortTable sort_table(const std::string& id, const std::string& caption, const Table& table);
 std::string sort_table_html(const SortTable& table);
 
-/// Base style sheet of every page, shared/host/embed/document.css.
-std::string style_sheet();
-
 /// Complete, self-contained document for light, dark, phone and print.
 std::string format_page(std::string_view title, std::string_view body);
+
+// Report page (page/report.html) and pages with charts, with style, scripts and data embedded.
+
+/// Complete, self-contained document for light, dark, phone and print. `parts` replace the
+/// {{placeholders}} of page/report.html, as HTML; `data` is for the scripts.
+std::string format_report_page(const std::map<std::string, std::string>& parts, const Json& data);
+
+/// Page of text and tables, with a list of `charts` for page/plain_charts.js.
+std::string format_chart_page(std::string_view title, std::string body, Json charts);
+
+/// Canvas of such a chart; `alt` describes it.
+std::string chart_html(std::string_view id, std::string_view alt);
+
+/// `template_text` with every {{name}} replaced by its part. Throws std::logic_error for a name
+/// without a part.
+std::string filled_in(std::string_view template_text,
+                      const std::map<std::string, std::string>& parts);
+
+/// JSON for a script element, without "<".
+std::string script_safe(std::string json);
 
 }  // namespace bess

@@ -8,4 +8,4 @@ file(GLOB page_files CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/*.js
 # Of the answers of --json: 'bess-train schema' prints it, and the package installs it.
 list(APPEND page_files ${BESS_PAGE_FILES}
      ${CMAKE_CURRENT_LIST_DIR}/answers.schema.json)
-bess_embed(figures workstation/report/figures/page_files.h ${page_files})
+bess_embed(figures workstation/report/figures/html.h ${page_files})

@@ -9,7 +9,6 @@
 #include "workstation/correction/student/proof_rounds.h"
 #include "workstation/data/env/day_errors.h"
 #include "workstation/report/figures/html.h"
-#include "workstation/report/figures/page_files.h"
 #include "workstation/report/report_tables.h"
 #include "workstation/runs/run/run_report.h"
 

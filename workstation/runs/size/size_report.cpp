@@ -8,10 +8,8 @@
 #include "shared/host/text.h"
 #include "workstation/base/answer.h"
 #include "workstation/report/figures/html.h"
-#include "workstation/report/figures/page_files.h"
 #include "workstation/report/figures/picture_table.h"
 #include "workstation/report/figures/policy_map.h"
-#include "workstation/report/report_page.h"
 
 namespace bess {
 namespace {

@@ -1,4 +1,4 @@
-#include "workstation/report/report_page.h"
+#include "workstation/report/figures/html.h"
 
 #include <gmock/gmock.h>
 
@@ -6,7 +6,6 @@
 
 #include "tests/support/rule_sets.h"
 #include "tests/support/tokens.h"
-#include "workstation/report/figures/html.h"
 #include "workstation/report/report_tables.h"
 
 namespace bess {
