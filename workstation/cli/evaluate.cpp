@@ -1,5 +1,4 @@
 // bess-train evaluate: profit of policies on recorded prices.
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>

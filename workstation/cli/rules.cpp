@@ -13,7 +13,6 @@
 #include "workstation/correction/rules/ruled_policy.h"
 #include "workstation/data/env/context_fit.h"
 #include "workstation/data/env/evaluate.h"
-#include "workstation/policy/rl/teacher.h"
 #include "workstation/runs/chain/common_options.h"
 #include "workstation/runs/chain/policy_factory.h"
 #include "workstation/runs/chain/price_input.h"

@@ -1,5 +1,4 @@
 // bess-train size: earnings and payback by battery size and contract, before purchase.
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <memory>
@@ -12,7 +11,6 @@
 #include "workstation/runs/chain/policy_factory.h"
 #include "workstation/runs/chain/price_input.h"
 #include "workstation/runs/run/run_record.h"
-#include "workstation/runs/run/run_report.h"
 #include "workstation/runs/size/size_report.h"
 
 namespace bess {

@@ -3,9 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <map>
 #include <optional>
-#include <utility>
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"

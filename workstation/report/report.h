@@ -12,7 +12,6 @@
 #include "workstation/correction/student/student_file.h"
 #include "workstation/policy/rl/train.h"
 #include "workstation/report/comparison.h"
-#include "workstation/report/figures/policy_map.h"
 #include "workstation/report/figures/walk_forward_figure.h"
 #include "workstation/report/report_tables.h"
 

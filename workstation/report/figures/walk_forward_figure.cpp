@@ -4,7 +4,6 @@
 
 #include "shared/host/text.h"
 #include "workstation/base/answer.h"
-#include "workstation/report/figures/html.h"
 
 namespace bess {
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "shared/host/minute_file.h"
 #include "shared/host/user_error.h"

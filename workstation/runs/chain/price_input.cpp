@@ -1,6 +1,5 @@
 #include "workstation/runs/chain/price_input.h"
 
-#include <fmt/core.h>
 #include <fmt/format.h>
 
 #include <filesystem>

@@ -1,7 +1,5 @@
 #include "workstation/runs/impact/impact_study.h"
 
-#include <fmt/core.h>
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>

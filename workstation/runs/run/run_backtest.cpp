@@ -1,6 +1,5 @@
 #include "workstation/runs/run/run_backtest.h"
 
-#include <fmt/core.h>
 #include <fmt/format.h>
 
 #include <algorithm>

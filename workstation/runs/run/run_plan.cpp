@@ -1,7 +1,5 @@
 #include "workstation/runs/run/run_plan.h"
 
-#include <fmt/core.h>
-
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "workstation/runs/chain/chain_steps.h"

@@ -1,7 +1,6 @@
 // Run plan from the command line and the run folder.
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "shared/host/minute_file.h"

@@ -1,6 +1,5 @@
 #include "workstation/runs/run/run_stages.h"
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>

@@ -2,7 +2,6 @@
 // with ageing; the plan of sizes, and classes of sizes that share a policy.
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
