@@ -92,18 +92,14 @@ RunPlan plan_run(const RunRequest& request) {
   RunConfig config = config_of(request, known, plan.folder);
   request.rule_files.apply(config, config.train.context);
   RunRecord& record = plan.record;
+  record.prices = known ? known->prices : run_file::kSimulatedPrices;
+  record.prices_name = known ? known->prices_name : kBuiltInMarketName;
+  if (known) record.day_ahead = known->day_ahead;
   if (!request.prices.empty()) {
     record.prices = absolute(request.prices);
     record.prices_name = fs::path(request.prices).filename().string();
-  } else {
-    record.prices = known ? known->prices : run_file::kSimulatedPrices;
-    record.prices_name = known ? known->prices_name : kBuiltInMarketName;
   }
-  if (!request.day_ahead.path.empty()) {
-    record.day_ahead = absolute(request.day_ahead.path);
-  } else if (known) {
-    record.day_ahead = known->day_ahead;
-  }
+  if (!request.day_ahead.path.empty()) record.day_ahead = absolute(request.day_ahead.path);
   if (config.train.context == ContextKind::kOutlook && record.day_ahead.empty()) {
     fail(
         "[train] context = \"outlook\" plans on day-ahead prices: add their file with "
@@ -122,12 +118,12 @@ RunPlan plan_run(const RunRequest& request) {
     teacher_hash = known->value("teacher");
   }
   // An existing run already accepted its findings; other prices are refused below.
-  plan.series = prices_of_run(record, plan.folder,
-                              there ? AcceptedFindings::all() : request.price_input.accepted());
+  const AcceptedFindings accepted =
+      there ? AcceptedFindings::all() : request.price_input.accepted();
+  plan.series = prices_of_run(record, plan.folder, accepted);
   record.identity = identity_of(config, prices_hash(plan.series), teacher_hash);
   if (!record.day_ahead.empty()) {
-    (void)read_day_ahead(plan.folder.path / record.day_ahead, plan.series,
-                         there ? AcceptedFindings::all() : request.price_input.accepted(),
+    (void)read_day_ahead(plan.folder.path / record.day_ahead, plan.series, accepted,
                          config.market.day_ahead_published_min);
     record.identity.emplace_back(kDayAheadKey, file_mark(plan.folder.path / record.day_ahead));
   }
