@@ -39,15 +39,10 @@ RunConfig parse_run_config(std::string_view text, const std::string& name);
 void set_config_key(RunConfig& config, std::string_view key, const TomlValue& value);
 /// Sets the keys of a TOML text; other keys keep their value.
 void apply_config_text(RunConfig& config, std::string_view text, const std::string& name);
-/// Throws UserError when keys are contradictory or implausible; `name` is the file's.
+/// Throws UserError naming the keys that are contradictory or implausible, such as MW instead of W;
+/// warns about unusual efficiencies. `name` is the file's.
 void require_consistent(const RunConfig& config, const std::string& name);
 
-// Plausibility across keys (config_plausibility.cpp): values in MW instead of W, unrealistic
-// efficiencies, training times of years.
-
-/// Throws UserError naming the keys when power, capacity or their ratio is implausible; warns about
-/// unusual efficiencies. `name` is the file's.
-void require_plausible(const RunConfig& config, const std::string& name);
 /// Warning on stderr when the training of a network takes more than an hour.
 void warn_long_training(const RunConfig& config);
 
