@@ -200,17 +200,14 @@ struct SiteClass {
   std::string rules;  ///< as one file; empty: none
 };
 
-struct Sites {
-  std::vector<Site> sites;
-  std::vector<SiteClass> classes;  ///< in the order of their first site
-};
-
-/// Throws UserError naming file, line and column.
-Sites read_sites(const fs::path& csv, const RunConfig& base, double rate_step_percent) {
+/// Adds the sites to the plan; returns their classes in the order of their first site. Throws
+/// UserError naming file, line and column.
+std::vector<SiteClass> read_sites(const SweepRequest& request, SweepPlan& plan) {
+  const fs::path csv = request.sites;
   const std::string text = read_file(csv);
   const CsvTable table(text, csv.string());
   const Columns columns = columns_of(csv_header(text), table, csv.string());
-  Sites read;
+  std::vector<SiteClass> classes;
   std::map<std::string, std::string> names;  // of keys
   std::set<std::string> ids, used;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
@@ -225,24 +222,24 @@ Sites read_sites(const fs::path& csv, const RunConfig& base, double rate_step_pe
     }
     if (!ids.insert(id).second) fail("{}: site \"{}\" is repeated", where, id);
     try {
-      const RunConfig config = config_of(own, base);
+      const RunConfig config = config_of(own, plan.base);
       require_consistent(config, where);
       const RuleSet& rules = config.distil.rules;
       const std::string rules_text = rules.empty() ? "" : format_rules(rules);
-      const RunConfig learnt = canonical(config, rate_step_percent);
+      const RunConfig learnt = canonical(config, request.c_rate_step_percent);
       const std::string key = learning_key(learnt, rules_text);
       const auto [at, is_new] = names.try_emplace(key, fmt::format("{:016x}", fnv1a(key)));
       if (is_new && !used.insert(at->second).second)
         fail("hash collision of two classes: {}", at->second);
-      if (is_new) read.classes.push_back({at->second, learnt, rules_text});
-      read.sites.push_back({id, own.value("region"), config.battery.power_w_max,
+      if (is_new) classes.push_back({at->second, learnt, rules_text});
+      plan.sites.push_back({id, own.value("region"), config.battery.power_w_max,
                             config.battery.capacity_wh, at->second});
     } catch (const UserError& error) {
       if (std::string_view(error.what()).starts_with(where)) throw;
       fail("{}: site \"{}\": {}", where, id, error.what());
     }
   }
-  return read;
+  return classes;
 }
 
 /// One member per line, with its class.
@@ -313,11 +310,11 @@ std::string dotted(const std::string& listed) {
 }
 
 /// Settings of a class that differ from the sweep's configuration.
-Entries class_settings(const SiteClass& one, const RunConfig& base, SweepPlan& plan) {
+Entries class_settings(const SiteClass& one, SweepPlan& plan) {
   Entries settings;
   if (!one.rules.empty()) settings.emplace_back(setting::kRules, keep_rules(plan, one.rules));
   settings.emplace_back(setting::kClass, one.name);
-  for (const ChangedKey& changed : changed_keys(one.config, base)) {
+  for (const ChangedKey& changed : changed_keys(one.config, plan.base)) {
     settings.emplace_back(dotted(changed.key), changed.value);
   }
   return settings;
@@ -332,11 +329,9 @@ std::vector<Entries> class_axis(const SweepRequest& request, SweepPlan& plan) {
   }
   if (!rules.empty())
     fail("{}: with --sites, set rules in the column \"rules\" instead of --rules", request.sites);
-  Sites sites = read_sites(request.sites, plan.base, request.c_rate_step_percent);
   std::vector<Entries> axis;
-  for (const SiteClass& one : sites.classes) axis.push_back(class_settings(one, plan.base, plan));
-  plan.sites = std::move(sites.sites);
-  plan.classes = sites.classes.size();
+  for (const SiteClass& one : read_sites(request, plan)) axis.push_back(class_settings(one, plan));
+  plan.classes = axis.size();
   return axis;
 }
 
