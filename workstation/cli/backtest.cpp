@@ -180,22 +180,19 @@ void run_backtest(const BacktestArguments& options) {
   const bool and_student =
       std::ranges::find(options.policies, kChainName) != options.policies.end();
   learn_folds(folds, {config, series, prices, folder, and_student}, options.policies);
-  std::vector<std::size_t> fitted_days;
-  std::vector<FoldRegimes> regimes;
+  std::vector<BacktestMonth> months;
   for (const Fold& fold : folds.traded) {
-    fitted_days.push_back(fold.market.fitted_days().size());
-    regimes.push_back(regimes_of(fold));
+    months.push_back({fold.month, fold.market.fitted_days().size(), regimes_of(fold)});
     warn_unknown_regimes(fold.month, fold.market, fold.market, fold.market.days_of(Split::kTest));
   }
   BacktestResults results{{},
-                          std::move(fitted_days),
+                          std::move(months),
                           folds.skipped,
                           options.plan.window_days,
                           fmt::format("{} on {}, prices {:08x}, seed {}", BESS_VERSION,
                                       counted(options.prices.size(), "file"),
                                       prices_checksum(series), config.train.seed),
-                          learning_identity(prices_hash(series), config),
-                          std::move(regimes)};
+                          learning_identity(prices_hash(series), config)};
   Progress progress("trade", "policies", static_cast<double>(options.policies.size()));
   for (const std::string& name : options.policies) {
     const FoldPolicy make = [&](const Fold& fold) {

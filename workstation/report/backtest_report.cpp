@@ -69,7 +69,8 @@ Table day_reset_table(const BacktestResults& results) {
 
 /// "the 90 to 120 days before it, of 120 requested": a fold uses the available days.
 std::string window_text(const BacktestResults& results) {
-  const auto [least, most] = std::ranges::minmax(results.fitted_days);
+  const auto [low, high] = std::ranges::minmax(results.months, {}, &BacktestMonth::fitted_days);
+  const std::size_t least = low.fitted_days, most = high.fitted_days;
   const std::string days = least == most ? fmt::format("the {} days before it", most)
                                          : fmt::format("the {} to {} days before it", least, most);
   const bool is_short = least < static_cast<std::size_t>(results.window_days);
@@ -104,12 +105,10 @@ std::string chart_caption(const BacktestResults& results) {
 /// Price regimes of months whose fold crosses a regime boundary, and months that are not traded.
 std::vector<std::string> month_notes(const BacktestResults& results) {
   std::vector<std::string> notes;
-  for (std::size_t m = 0; m < results.regimes.size(); ++m) {
-    const FoldRegimes& of = results.regimes[m];
+  for (const auto& [month, fitted_days, of] : results.months) {
     if (!of.crosses()) continue;
     notes.push_back(fmt::format("{} crosses a price regime boundary: fitted on {}; traded in {}",
-                                results.policies.front().months[m], regime_names(of.fitted),
-                                regime_names(of.traded)));
+                                month, regime_names(of.fitted), regime_names(of.traded)));
   }
   for (const SkippedMonth& month : results.skipped) {
     notes.push_back(fmt::format("{} is not traded: {}", month.month, month.reason));
@@ -148,15 +147,16 @@ Table month_table(const BacktestResults& results) {
   for (const WalkForward& policy : results.policies) cells.push_back(policy.name);
   cells.emplace_back("training days");
   table.add<std::string>({{"", "policy", "", 0, "Policy"}, std::identity{}}, cells);
-  for (std::size_t m = 0; m < first.months.size(); ++m) {
+  for (std::size_t m = 0; m < results.months.size(); ++m) {
+    const auto& [name, fitted_days, regimes] = results.months[m];
     cells.clear();
     for (const WalkForward& policy : results.policies) {
       const Evaluation& month = policy.by_month[m];
       cells.push_back(fmt::format("{:.0f} ({:+.0f})", month.profit_eur_per_day_per_mwh(),
                                   paired_difference(month, first.by_month[m]).mean));
     }
-    cells.push_back(fmt::format("{}", results.fitted_days[m]));
-    table.add<std::string>({{"", first.months[m], "", 0, first.months[m]}, std::identity{}}, cells);
+    cells.push_back(fmt::format("{}", fitted_days));
+    table.add<std::string>({{"", name, "", 0, name}, std::identity{}}, cells);
   }
   return table;
 }
@@ -183,7 +183,7 @@ std::string format_backtest_table(const BacktestResults& results) {
   std::string text = fmt::format(
       "{} months, {} days, each month traded by policies fitted on {};\nSoC carried over; EUR per "
       "day per MWh of capacity\n{}",
-      first.months.size(), first.total.days.size(), window_text(results),
+      results.months.size(), first.total.days.size(), window_text(results),
       total_table(results).only(kBacktestShownKeys).text());
   if (const Table reset = day_reset_table(results); reset.size() > 0) {
     text += "\nDay-reset accounting: each day starts at the same SoC, its end is not valued\n" +
@@ -206,10 +206,10 @@ std::string backtest_csv(const BacktestResults& results) {
   std::vector<std::string> months;
   std::vector<double> fitted;
   for (const WalkForward& policy : results.policies) {
-    for (std::size_t m = 0; m < policy.months.size(); ++m) {
+    for (std::size_t m = 0; m < results.months.size(); ++m) {
       rows.push_back(comparison_row(policy.name, policy.by_month[m], &first.by_month[m]));
-      months.push_back(policy.months[m]);
-      fitted.push_back(static_cast<double>(results.fitted_days[m]));
+      months.push_back(results.months[m].name);
+      fitted.push_back(static_cast<double>(results.months[m].fitted_days));
     }
     rows.push_back(comparison_row(policy.name, policy.total, &first.total));
     months.emplace_back(kAllMonths);
@@ -237,7 +237,7 @@ Json backtest_json(const BacktestResults& results) {
   const Table total = total_table(results).only(kBacktestAnswerKeys);
   const Table reset = day_reset_table(results);
   for (std::size_t p = 0; p < results.policies.size(); ++p) {
-    Json policy = Json::object({{"months", results.policies[p].months.size()}});
+    Json policy = Json::object({{"months", results.months.size()}});
     total.add_row(p, policy);
     Json day_reset = reset.size() == 0 ? Json::null() : Json::object();
     if (reset.size() > 0) reset.only(kDayResetKeys).add_row(p, day_reset);
@@ -249,17 +249,12 @@ Json backtest_json(const BacktestResults& results) {
   json.set(key::kCarrySoc, true);
   json.set("learnt_from", results.learnt_from);
   json.set("policies", std::move(policies));
-  Json months = Json::list();
-  for (std::size_t m = 0; m < results.fitted_days.size(); ++m) {
-    Json month = Json::object(
-        {{"month", results.policies.front().months[m]}, {"fitted_days", results.fitted_days[m]}});
-    if (m < results.regimes.size()) {
-      month.set("regimes_fitted", names_json(results.regimes[m].fitted));
-      month.set("regimes_traded", names_json(results.regimes[m].traded));
-    }
-    months.add(std::move(month));
-  }
-  json.set("months", std::move(months));
+  json.set("months", Json::list_from(results.months, [](const BacktestMonth& month) {
+             return Json::object({{"month", month.name},
+                                  {"fitted_days", month.fitted_days},
+                                  {"regimes_fitted", names_json(month.regimes.fitted)},
+                                  {"regimes_traded", names_json(month.regimes.traded)}});
+           }));
   json.set("not_traded", Json::list_from(results.skipped, [](const SkippedMonth& month) {
              return Json::object({{"month", month.month}, {"reason", month.reason}});
            }));

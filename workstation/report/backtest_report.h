@@ -11,15 +11,21 @@
 
 namespace bess {
 
+/// Traded month and the training of its policies.
+struct BacktestMonth {
+  std::string name;         ///< Fold::month
+  std::size_t fitted_days;  ///< number of training days
+  FoldRegimes regimes{};
+};
+
 /// Gains are day-by-day differences to the first policy.
 struct BacktestResults {
-  std::vector<WalkForward> policies;     ///< not empty; the same months and days for all
-  std::vector<std::size_t> fitted_days;  ///< number of training days, by month
+  std::vector<WalkForward> policies;  ///< not empty; the same days for all
+  std::vector<BacktestMonth> months;  ///< as in WalkForward::by_month
   std::vector<SkippedMonth> skipped;
   int window_days;
-  std::string provenance;              ///< one line: prices, configuration
-  std::string learnt_from{};           ///< identity: prices, seed and configuration
-  std::vector<FoldRegimes> regimes{};  ///< by month
+  std::string provenance;     ///< one line: prices, configuration
+  std::string learnt_from{};  ///< identity: prices, seed and configuration
 };
 
 /// One line per policy: profit, gain, cycles, drawdown; then the gain by month.

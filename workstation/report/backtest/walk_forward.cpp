@@ -157,7 +157,6 @@ WalkForward walk_forward(const std::string& name, const Folds& folds, const Fold
              result.day_reset);
     }
     append(evaluation, result.total);
-    result.months.push_back(fold.month);
     result.by_month.push_back(std::move(evaluation));
   }
   value_charge_left(result.total, battery, mean_settled_of(result.total, market));

@@ -59,8 +59,7 @@ std::variant<Fold, SkippedMonth> make_fold(const MarketSteps& market, const std:
 struct WalkForward {
   std::string name;
   Evaluation total{};
-  std::vector<std::string> months{};   ///< as in Folds::traded
-  std::vector<Evaluation> by_month{};  ///< parallel to `months`
+  std::vector<Evaluation> by_month{};  ///< as in Folds::traded
   Evaluation day_reset{};              ///< day-reset accounting; empty unless requested
 
   /// Defined in evaluate.h, EUR per MWh of capacity.

@@ -20,8 +20,8 @@ using testing::HasSubstr;
 /// Two months of three days; each policy earns this amount on its second day, and 10 EUR on every
 /// other one.
 WalkForward traded(const std::string& name, double second_day_eur) {
-  WalkForward result{.name = name, .total = {}, .months = {"2023-04", "2023-05"}, .by_month = {}};
-  for (const std::string& month : result.months) {
+  WalkForward result{.name = name};
+  for (const std::string month : {"2023-04", "2023-05"}) {
     Evaluation e;
     e.capacity_mwh = 1;
     for (int day = 1; day <= 3; ++day) {
@@ -37,7 +37,7 @@ WalkForward traded(const std::string& name, double second_day_eur) {
 
 BacktestResults results(double second_day_eur) {
   return {{traded("rbc", second_day_eur), traded("sdp", 40)},
-          {90, 120},
+          {{"2023-04", 90}, {"2023-05", 120}},
           {{"2023-02", "31 of the 120 days before it are there"}},
           120,
           "made by hand"};
@@ -49,9 +49,9 @@ TEST(BacktestReport, ShowsTheFittingDaysOfEachMonth) {
   EXPECT_THAT(backtest_csv(fitted),
               AllOf(HasSubstr(",fitted_days,"), HasSubstr(",90,"), HasSubstr(",120,")));
   EXPECT_THAT(backtest_json(fitted).line(),
-              AllOf(HasSubstr("{\"month\":\"2023-04\",\"fitted_days\":90}"),
+              AllOf(HasSubstr("{\"month\":\"2023-04\",\"fitted_days\":90,"),
                     HasSubstr("\"not_traded\":[{\"month\":\"2023-02\",\"reason\":\"31 ")));
-  fitted.fitted_days = {120, 120};
+  for (BacktestMonth& month : fitted.months) month.fitted_days = 120;
   EXPECT_THAT(format_backtest_table(fitted), AllOf(Names("120"), testing::Not(Names("90"))));
 }
 
@@ -80,12 +80,12 @@ TEST(BacktestReport, AFoldThatCrossesABoundaryOfTheMarketIsNamed) {
   const PriceRegime* const regimes = kPriceRegimes;
   BacktestResults crossing = results(5);
   for (WalkForward& policy : crossing.policies) {
-    policy.months = {"2024-10", "2024-12"};
     for (std::size_t d = 0; d < policy.total.days.size(); ++d) {
       policy.total.days[d].date = (d < 3 ? "2024-10-0" : "2024-12-0") + std::to_string(d % 3 + 1);
     }
   }
-  crossing.regimes = {{{regimes + 1}, {regimes + 1}}, {{regimes + 1}, {regimes + 2}}};
+  crossing.months = {{"2024-10", 90, {{regimes + 1}, {regimes + 1}}},
+                     {"2024-12", 120, {{regimes + 1}, {regimes + 2}}}};
   const auto is_named = Names(std::string("2024-12 ") + regimes[1].name + " " + regimes[2].name);
   EXPECT_THAT(format_backtest_table(crossing), is_named);
   EXPECT_THAT(backtest_json(crossing).line(),
