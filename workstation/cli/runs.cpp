@@ -49,11 +49,11 @@ std::vector<RunFolder> all_runs(const Options& options) {
 void write_page(const Options& options) {
   require_distinct({{"--html", options.html}}, named_paths("folders", options.folders));
   require_writable(options.html);
-  std::vector<RunLine> runs;
-  for (const RunFolder& folder : all_runs(options)) runs.push_back(load_run_line(folder));
+  std::vector<RunSummary> runs;
+  for (const RunFolder& folder : all_runs(options)) runs.push_back(load_any_run(folder));
   write_file(options.html, runs_page(runs, options.html));
   const auto finished =
-      std::ranges::count_if(runs, [](const RunLine& run) { return run.summary.has_value(); });
+      std::ranges::count_if(runs, [](const RunSummary& run) { return !run.evaluations.empty(); });
   fmt::print("{}: {}, {} with figures\n", options.html, counted(runs.size(), "run"), finished);
 }
 

@@ -152,13 +152,11 @@ std::optional<PairedDifference> gain(const Evaluation& run, const Evaluation& fi
 
 /// "KEY: A | B | C" for each of them.
 std::string what_differs(const std::vector<RunSummary>& runs) {
-  std::vector<const RunRecord*> records;
-  for (const RunSummary& run : runs) records.push_back(&run.record);
   std::string text;
-  for (const std::string& key : differing_keys(records)) {
+  for (const std::string& key : differing_keys(runs)) {
     std::string line;
-    for (const RunRecord* record : records) {
-      line += fmt::format("{}{}", line.empty() ? "" : " | ", value_text(*record, key));
+    for (const RunSummary& run : runs) {
+      line += fmt::format("{}{}", line.empty() ? "" : " | ", value_text(run.record, key));
     }
     text += fmt::format("{}: {}\n", key, line);
   }
@@ -229,13 +227,13 @@ std::string value_text(const RunRecord& record, const std::string& key) {
   return text;
 }
 
-std::vector<std::string> differing_keys(const std::vector<const RunRecord*>& runs) {
+std::vector<std::string> differing_keys(const std::vector<RunSummary>& runs) {
   std::vector<std::string> keys;
-  for (const RunRecord* run : runs) {
-    for (const auto& entry : run->identity) {
+  for (const RunSummary& run : runs) {
+    for (const auto& entry : run.record.identity) {
       const std::string& key = entry.first;
       const bool is_same = std::ranges::all_of(
-          runs, [&](const RunRecord* other) { return other->value(key) == entry.second; });
+          runs, [&](const RunSummary& other) { return other.record.value(key) == entry.second; });
       if (!is_same && std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
     }
   }

@@ -35,7 +35,8 @@ inline constexpr const char* kExportedPolicy = "corrected student";
 struct RunSummary {
   RunFolder folder;
   RunRecord record;
-  std::vector<NamedEvaluation> evaluations;
+  std::vector<NamedEvaluation> evaluations;  ///< empty unless the run is finished and unedited
+  std::string trouble{};                     ///< why a finished run has none, without a full stop
 };
 
 /// Throws UserError with a remedy when there is no finished run.
@@ -47,7 +48,7 @@ Json summary_json(const RunSummary& run);
 /// Value of a key as readable text in one line.
 std::string value_text(const RunRecord& record, const std::string& key);
 /// Keys whose values differ between runs.
-std::vector<std::string> differing_keys(const std::vector<const RunRecord*>& runs);
+std::vector<std::string> differing_keys(const std::vector<RunSummary>& runs);
 
 /// One line per run, and the different settings.
 std::string format_runs_table(const std::vector<RunSummary>& runs);
@@ -55,18 +56,11 @@ std::string format_runs_table(const std::vector<RunSummary>& runs);
 // Page of many runs (runs_page.cpp): profit, proof, rules and settings, with a link to each run's
 // report. Failed, stopped and edited runs are listed with their state.
 
-struct RunLine {
-  RunFolder folder;
-  RunRecord record;
-  std::optional<RunSummary> summary;  ///< of a finished, unedited run
-  std::string trouble;                ///< why there is none, without a full stop
-};
-
-/// Throws UserError when the folder contains no run.
-RunLine load_run_line(const RunFolder& folder);
+/// Throws UserError only when the folder contains no run.
+RunSummary load_any_run(const RunFolder& folder);
 
 /// Gains are over the first finished run. Links are relative to the folder of `page`.
-std::string runs_page(const std::vector<RunLine>& runs, const std::filesystem::path& page);
+std::string runs_page(const std::vector<RunSummary>& runs, const std::filesystem::path& page);
 
 /// Throws UserError naming `prices`. Call before training.
 void require_test_days(const MarketSteps& market, const std::string& prices);

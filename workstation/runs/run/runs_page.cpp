@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Cell run_cell(const RunLine& run, const fs::path& page) {
+Cell run_cell(const RunSummary& run, const fs::path& page) {
   const std::string name = run.folder.path.string();
   const fs::path report = run.folder.file(run_file::kReport);
   if (!fs::exists(report)) return text_cell(name);
@@ -28,14 +28,14 @@ Cell run_cell(const RunLine& run, const fs::path& page) {
 }
 
 /// Remaining violations after the last round of a failed proof.
-std::string left_text(const RunLine& run) {
+std::string left_text(const RunSummary& run) {
   const std::string rounds = run.folder.file(run_file::kProofRounds).string();
   if (!fs::exists(rounds)) return {};
   const auto parsed = parse_proof_rounds_csv(read_file(rounds), rounds);
   return parsed.empty() ? std::string() : ": " + parsed.back().text();
 }
 
-Cell proof_cell(const RunLine& run) {
+Cell proof_cell(const RunSummary& run) {
   if (run.record.has_failed()) return text_cell("not proved" + left_text(run));
   if (!run.record.figures) return no_text_cell();
   const RunFigures& figures = *run.record.figures;
@@ -45,13 +45,12 @@ Cell proof_cell(const RunLine& run) {
   return text_cell(fmt::format("proved in {} states", grouped(figures.states_checked)));
 }
 
-std::string state_text(const RunLine& run) {
+std::string state_text(const RunSummary& run) {
   return run.trouble.empty() ? run.record.state() : run.trouble;
 }
 
-const Evaluation* exported_days(const RunLine& run, EvaluationField field) {
-  if (!run.summary) return nullptr;
-  const NamedEvaluation* found = find_evaluation(run.summary->evaluations, kExportedPolicy);
+const Evaluation* exported_days(const RunSummary& run, EvaluationField field) {
+  const NamedEvaluation* found = find_evaluation(run.evaluations, kExportedPolicy);
   return found == nullptr ? nullptr : &(found->*field);
 }
 
@@ -67,10 +66,10 @@ Cell gain_cell(const Evaluation& days, const Evaluation& first) {
       gain.mean);
 }
 
-std::vector<Cell> figure_cells(const RunLine& run, const Evaluation* first) {
+std::vector<Cell> figure_cells(const RunSummary& run, const Evaluation* first) {
   const Evaluation* carried = exported_days(run, &NamedEvaluation::carried_over);
   if (carried == nullptr || carried->days.empty()) return std::vector<Cell>(7, Cell{kNoValue});
-  const auto rows = comparison_rows(run.summary->evaluations, &NamedEvaluation::carried_over);
+  const auto rows = comparison_rows(run.evaluations, &NamedEvaluation::carried_over);
   const auto row = std::ranges::find(rows, kExportedPolicy, &ComparisonRow::name);
   const double reset =
       exported_days(run, &NamedEvaluation::day_reset)->profit_eur_per_day_per_mwh();
@@ -86,7 +85,7 @@ std::vector<Cell> figure_cells(const RunLine& run, const Evaluation* first) {
           number_cell(reset, 1)};
 }
 
-SortTable run_table(const std::vector<RunLine>& runs, const fs::path& page) {
+SortTable run_table(const std::vector<RunSummary>& runs, const fs::path& page) {
   SortTable table{"runs",
                   fmt::format("Profit of the {} of each run on its test days", kExportedPolicy),
                   {"Run", "State", "Proof", "Rules", "Seed", "Days", "Carried over, EUR/day/MWh",
@@ -94,10 +93,10 @@ SortTable run_table(const std::vector<RunLine>& runs, const fs::path& page) {
                    "% of foresight", "Same charge each day, EUR/day/MWh", "Weights"},
                   {}};
   const Evaluation* first = nullptr;
-  for (const RunLine& run : runs) {
+  for (const RunSummary& run : runs) {
     if (first == nullptr) first = exported_days(run, &NamedEvaluation::carried_over);
   }
-  for (const RunLine& run : runs) {
+  for (const RunSummary& run : runs) {
     const std::string seed = run.record.value("seed");
     const std::string rules = value_text(run.record, kRulesKey);
     std::vector<Cell> row{run_cell(run, page),
@@ -114,13 +113,11 @@ SortTable run_table(const std::vector<RunLine>& runs, const fs::path& page) {
 }
 
 /// One column for each key with different values.
-SortTable settings_table(const std::vector<RunLine>& runs) {
-  std::vector<const RunRecord*> records;
-  for (const RunLine& run : runs) records.push_back(&run.record);
+SortTable settings_table(const std::vector<RunSummary>& runs) {
   SortTable table{"settings", "Different settings", {"Run"}, {}};
-  const std::vector<std::string> keys = differing_keys(records);
+  const std::vector<std::string> keys = differing_keys(runs);
   table.header.insert(table.header.end(), keys.begin(), keys.end());
-  for (const RunLine& run : runs) {
+  for (const RunSummary& run : runs) {
     std::vector<Cell> row{text_cell(run.folder.path.string())};
     for (const std::string& key : keys) row.push_back(text_cell(value_text(run.record, key)));
     table.rows.push_back(std::move(row));
@@ -130,18 +127,18 @@ SortTable settings_table(const std::vector<RunLine>& runs) {
 
 }  // namespace
 
-RunLine load_run_line(const RunFolder& folder) {
-  RunLine line{folder, existing_run_record(folder), {}, {}};
-  if (!line.record.figures) return line;
+RunSummary load_any_run(const RunFolder& folder) {
+  RunSummary run{folder, existing_run_record(folder), {}};
+  if (!run.record.figures) return run;
   try {
-    line.summary = load_run_summary(folder);
+    return load_run_summary(folder);
   } catch (const UserError& error) {
-    line.trouble = one_line(error.what());
+    run.trouble = one_line(error.what());
   }
-  return line;
+  return run;
 }
 
-std::string runs_page(const std::vector<RunLine>& runs, const fs::path& page) {
+std::string runs_page(const std::vector<RunSummary>& runs, const fs::path& page) {
   const std::string title = counted(runs.size(), "run");
   const SortTable settings = settings_table(runs);
   const std::string differ = settings.header.size() > 1

@@ -50,8 +50,8 @@ class RunsPage : public testing::Test {
   }
 
   std::string page_of(const std::vector<RunFolder>& folders) {
-    std::vector<RunLine> runs;
-    for (const RunFolder& folder : folders) runs.push_back(load_run_line(folder));
+    std::vector<RunSummary> runs;
+    for (const RunFolder& folder : folders) runs.push_back(load_any_run(folder));
     return runs_page(runs, root_.file("all.html"));
   }
 
@@ -100,7 +100,7 @@ TEST_F(RunsPage, EditedNumbersAreNotShown) {
 
 TEST_F(RunsPage, AFolderWithoutARunIsAnError) {
   std::filesystem::create_directories(root_.file("empty"));
-  EXPECT_THROW((void)load_run_line({root_.file("empty")}), UserError);
+  EXPECT_THROW((void)load_any_run({root_.file("empty")}), UserError);
 }
 
 }  // namespace
