@@ -324,29 +324,26 @@ double rule_validation_profit(const MarketSteps& market, const BatteryParameters
 }
 
 Json learning_json(const RunResults& in) {
-  Json training = Json::list();
-  for (const CurvePoint& p : in.training_curve) {
+  const auto training = [&](const CurvePoint& p) {
     const bool is_kept = &p == &kept_point(in.training_curve);
-    training.add(Json::list_of(static_cast<double>(p.step), p.validation_eur_per_day_per_mwh,
-                               is_kept ? 1.0 : 0.0, p.loss));
-  }
-  Json distil = Json::list();
-  bool by_construction = !in.distil_curve.empty();
-  for (const DistilPoint& p : in.distil_curve) {
-    distil.add(Json::list_of(static_cast<double>(p.epoch), p.teacher_loss, p.correction_loss,
-                             p.visited_loss));
-    by_construction = by_construction && p.is_by_construction();
-  }
-  Json checkpoints = Json::list();
-  for (const StudentCheckpoint& c : in.checkpoints) {
-    checkpoints.add(
-        Json::list_of(c.epoch, c.validation_eur_per_day_per_mwh, checkpoint_state_name(c.state)));
-  }
+    return Json::list_of(static_cast<double>(p.step), p.validation_eur_per_day_per_mwh,
+                         is_kept ? 1.0 : 0.0, p.loss);
+  };
+  const auto distil = [](const DistilPoint& p) {
+    return Json::list_of(static_cast<double>(p.epoch), p.teacher_loss, p.correction_loss,
+                         p.visited_loss);
+  };
+  const auto checkpoint = [](const StudentCheckpoint& c) {
+    return Json::list_of(c.epoch, c.validation_eur_per_day_per_mwh, checkpoint_state_name(c.state));
+  };
+  const bool by_construction =
+      !in.distil_curve.empty() &&
+      std::ranges::all_of(in.distil_curve, &DistilPoint::is_by_construction);
   return Json::object({{"by_construction", by_construction},
-                       {"checkpoints", std::move(checkpoints)},
-                       {"training", std::move(training)},
+                       {"checkpoints", Json::list_from(in.checkpoints, checkpoint)},
+                       {"training", Json::list_from(in.training_curve, training)},
                        {"rule", rule_validation_profit(in.market, in.battery)},
-                       {"distil", std::move(distil)}});
+                       {"distil", Json::list_from(in.distil_curve, distil)}});
 }
 
 /// Name and colour of each baseline drawn with the exported policy.

@@ -84,10 +84,6 @@ std::string same_program_text(const std::vector<NamedEvaluation>& evaluations) {
 
 namespace {
 
-std::string text_or_dash(bool present, const std::string& text) {
-  return present ? text : kNoValue;
-}
-
 std::string comparison_table(const std::string& caption, std::vector<ComparisonRow> rows) {
   std::erase_if(rows, [](const ComparisonRow& row) { return is_under_rules(row.name); });
   if (rows.empty()) return {};
@@ -123,9 +119,9 @@ std::string rules_table(const Certificate& uncorrected, const Certificate& corre
     const bool is_bound = after[d].binds_student;
     table.rows.push_back({fmt::format("{} \u2013 {}", after[d].name, after[d].text),
                           held_by(corrected.rules.rules[d - kPropertyCount], kind),
-                          text_or_dash(is_bound, grouped(after[d].states)),
+                          is_bound ? grouped(after[d].states) : kNoValue,
                           d < before.size() ? percent_broken(before[d]) : kNoValue,
-                          text_or_dash(is_bound, grouped(after[d].violations))});
+                          is_bound ? grouped(after[d].violations) : kNoValue});
   }
   return format_table(table);
 }
