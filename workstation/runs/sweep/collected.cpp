@@ -144,8 +144,6 @@ bool run_task(const SweepFolder& folder, int number) {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 struct Column {
   const char* name;  ///< in tasks.csv and, of the carried-over row, in a run's table
   int decimals;
@@ -228,7 +226,7 @@ struct FoldedSettings {
   const SweepTask* first = nullptr;
   int tasks = 0;
   std::vector<DayValue> profits = {};  ///< of proved tasks, with month if there are folds
-  double sum = 0, cycles = 0;          ///< of proved tasks
+  double cycles = 0;                   ///< of proved tasks
 };
 
 std::string columns_of(const FoldedSettings& row) {
@@ -236,7 +234,7 @@ std::string columns_of(const FoldedSettings& row) {
   const DayErrors errors = day_errors(row.profits);
   const auto [low, high] = std::ranges::minmax(row.profits, {}, &DayValue::second);
   const auto proved = static_cast<double>(row.profits.size());
-  return fmt::format("{:.4f},{},{:.4f},{:.4f},{:.4f}", row.sum / proved,
+  return fmt::format("{:.4f},{},{:.4f},{:.4f},{:.4f}", mean_of(row.profits),
                      error_text(errors.months > 1 ? errors.by_month : errors.plain, 4, ""),
                      low.second, high.second, row.cycles / proved);
 }
@@ -310,7 +308,6 @@ std::string settings_csv(const std::vector<CollectedTask>& tasks) {
     ++row.tasks;
     if (!one.figures) continue;
     row.profits.emplace_back(one.task.value(setting::kFold), one.figures->profit);
-    row.sum += one.figures->profit;
     row.cycles += one.figures->cycles_per_day;
   }
   std::vector<std::string> names = names_in(tasks);
