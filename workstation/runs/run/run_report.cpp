@@ -144,12 +144,6 @@ Json row_json(const ComparisonRow& row) {
   return json;
 }
 
-/// Gain over another run with the same days.
-std::optional<PairedDifference> gain(const Evaluation& run, const Evaluation& first) {
-  if (!std::ranges::equal(run.days, first.days, {}, &DayResult::date, &DayResult::date)) return {};
-  return paired_difference(run, first);
-}
-
 /// "KEY: A | B | C" for each of them.
 std::string what_differs(const std::vector<RunSummary>& runs) {
   std::string text;
@@ -284,6 +278,11 @@ Json summary_json(const RunSummary& run) {
   return json;
 }
 
+std::optional<PairedDifference> gain_over_run(const Evaluation& run, const Evaluation& first) {
+  if (!std::ranges::equal(run.days, first.days, {}, &DayResult::date, &DayResult::date)) return {};
+  return paired_difference(run, first);
+}
+
 std::string format_runs_table(const std::vector<RunSummary>& runs) {
   std::size_t width = 3;
   for (const RunSummary& run : runs) width = std::max(width, run.folder.path.string().size());
@@ -298,7 +297,7 @@ std::string format_runs_table(const std::vector<RunSummary>& runs) {
     const auto rows = comparison_rows(run.evaluations, &NamedEvaluation::carried_over);
     const auto row = std::ranges::find(rows, kExportedPolicy, &ComparisonRow::name);
     const auto over_first =
-        &run == &runs.front() ? std::nullopt : gain(student.carried_over, first);
+        &run == &runs.front() ? std::nullopt : gain_over_run(student.carried_over, first);
     text += fmt::format(
         "{:<{}} {:>5} {:>5} {:>5} {:>8.1f} {:>6} {:>8} {:>8} {:>6} {:>8} {:>11.1f} {:>9} {:>8.1f} "
         "{:>9}\n",

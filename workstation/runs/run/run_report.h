@@ -50,6 +50,9 @@ std::string value_text(const RunRecord& record, const std::string& key);
 /// Keys whose values differ between runs.
 std::vector<std::string> differing_keys(const std::vector<RunSummary>& runs);
 
+/// Gain over another run; none without the same days.
+std::optional<PairedDifference> gain_over_run(const Evaluation& run, const Evaluation& first);
+
 /// One line per run, and the different settings.
 std::string format_runs_table(const std::vector<RunSummary>& runs);
 

@@ -56,14 +56,12 @@ const Evaluation* exported_days(const RunSummary& run, EvaluationField field) {
 
 /// Gain over the first finished run with the same days.
 Cell gain_cell(const Evaluation& days, const Evaluation& first) {
-  const bool same =
-      std::ranges::equal(days.days, first.days, {}, &DayResult::date, &DayResult::date);
-  if (&days == &first || !same) return {kNoValue};
-  const PairedDifference gain = paired_difference(days, first);
+  const auto gain = &days == &first ? std::nullopt : gain_over_run(days, first);
+  if (!gain) return {kNoValue};
   return number_cell(
-      fmt::format("{:+.1f} \u00b1 {} ({})", gain.mean, error_text(gain.errors.plain, 1, kNoValue),
-                  error_text(gain.errors.by_month, 1, kNoValue)),
-      gain.mean);
+      fmt::format("{:+.1f} \u00b1 {} ({})", gain->mean, error_text(gain->errors.plain, 1, kNoValue),
+                  error_text(gain->errors.by_month, 1, kNoValue)),
+      gain->mean);
 }
 
 std::vector<Cell> figure_cells(const RunSummary& run, const Evaluation* first) {
