@@ -9,7 +9,6 @@
 #include "shared/nn/learnt_prices.h"
 #include "workstation/base/answer.h"
 #include "workstation/cli/commands.h"
-#include "workstation/runs/log/log_comparison.h"
 #include "workstation/runs/log/log_input.h"
 #include "workstation/runs/log/log_replay.h"
 

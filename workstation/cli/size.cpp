@@ -11,7 +11,7 @@
 #include "workstation/runs/chain/policy_factory.h"
 #include "workstation/runs/chain/price_input.h"
 #include "workstation/runs/run/run_record.h"
-#include "workstation/runs/size/size_report.h"
+#include "workstation/runs/size/size_cell.h"
 
 namespace bess {
 namespace {

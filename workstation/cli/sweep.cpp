@@ -15,7 +15,6 @@
 #include "shared/host/user_error.h"
 #include "workstation/base/answer.h"
 #include "workstation/cli/commands.h"
-#include "workstation/runs/sweep/class_packages.h"
 #include "workstation/runs/sweep/collected.h"
 #include "workstation/runs/sweep/sweep_plan.h"
 

@@ -1,4 +1,4 @@
-#include "workstation/runs/log/log_comparison.h"
+#include "workstation/runs/log/log_input.h"
 
 #include "shared/host/user_error.h"
 #include "workstation/correction/student/student_policy.h"

@@ -12,6 +12,7 @@
 #include "workstation/correction/student/student_file.h"
 #include "workstation/data/env/cycle_log.h"
 #include "workstation/data/env/evaluate.h"
+#include "workstation/report/comparison.h"
 
 namespace bess {
 
@@ -101,5 +102,22 @@ std::string statement_page(const std::vector<LoggedDay>& days, const BatteryPara
 /// "compiled", a student file or a run folder. By outlook it decides on the logged break-even
 /// price. Throws UserError.
 StudentFile student_for_log(const std::string& name);
+
+// Log comparison (log_comparison.cpp): other policies in the same control cycles, with the
+// controller's prices and their delay, from the same SoC.
+
+inline constexpr const char* kThisBattery = "this battery";
+
+/// This battery, `policies` and foresight; SoC carried over, final charge valued. A policy is
+/// "rbc", "rbc:LOW:HIGH" or a name for student_for_log(). Throws UserError.
+std::vector<NamedEvaluation> compare_log(const ReadLog& read,
+                                         const std::vector<std::string>& policies);
+
+/// Earnings of the whole battery over all days, EUR.
+struct NetEarnings {
+  double paid_eur;    ///< net of costs and wear
+  double charge_eur;  ///< value of the final charge
+};
+NetEarnings net_earnings_of(const Evaluation& evaluation);
 
 }  // namespace bess

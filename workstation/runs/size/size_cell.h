@@ -1,10 +1,12 @@
 // Economics of one battery under one contract: yearly earnings after contract costs, and payback
-// with ageing; the plan of sizes, and classes of sizes that share a policy.
+// with ageing; the plan of sizes, classes of sizes that share a policy, and the report.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "shared/host/json.h"
 #include "workstation/report/backtest/walk_forward.h"
 #include "workstation/runs/chain/run_config.h"
 
@@ -130,5 +132,20 @@ void add_lifetime(SizeCell& cell, const Ageing& ageing);
 /// Shortest payback; if none pays back, the highest lifetime result per EUR of price; without
 /// prices, the highest yearly earnings per kWh.
 const SizeCell& best_of(const std::vector<SizeCell>& cells);
+
+// Size report (size_report.cpp): table, CSV, JSON, and a page with a heat map per contract.
+
+struct SizeReport {
+  const SizePlan& plan;
+  const SizeCells& weighed;
+  std::string provenance;  ///< one line: prices, policy, window
+};
+
+std::string format_size_table(const SizeReport& report);
+/// Header `power_kw,capacity_kwh,contract,...`, one row per cell.
+std::string size_csv(const SizeReport& report);
+Json size_json(const SizeReport& report);
+/// Writes size.html into `folder`.
+void write_size_page(const SizeReport& report, const std::filesystem::path& folder);
 
 }  // namespace bess

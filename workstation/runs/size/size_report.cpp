@@ -1,4 +1,4 @@
-#include "workstation/runs/size/size_report.h"
+#include "workstation/runs/size/size_cell.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "workstation/runs/sweep/class_packages.h"
+#include "workstation/runs/sweep/collected.h"
 
 #include <fmt/format.h>
 

@@ -10,7 +10,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 #include "tests/support/user_error_of.h"
-#include "workstation/runs/log/log_comparison.h"
+#include "workstation/runs/log/log_input.h"
 #include "workstation/runs/log/log_replay.h"
 
 namespace bess {

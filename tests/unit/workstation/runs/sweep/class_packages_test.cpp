@@ -1,6 +1,6 @@
 // From classes of sites to packages and an inventory, with a simulated tools/package: results,
 // unchanged files, and refusals. tests/system/guest/classes has the real one.
-#include "workstation/runs/sweep/class_packages.h"
+#include "workstation/runs/sweep/collected.h"
 
 #include <gmock/gmock.h>
 
