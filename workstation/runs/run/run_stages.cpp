@@ -381,17 +381,18 @@ RunStages::Names RunStages::make_corrected_student() {
   return {kStudent, kDistilCurve, kProofRounds, kCheckpoints};
 }
 
-StudentFile RunStages::unproved_student() const {
-  StudentFile student = load_student(path(kUnprovedStudent));
-  student.certificate.counterexamples = parse_counterexamples_csv(
-      read_file(path(kUnprovedViolations)), path(kUnprovedViolations).string());
+StudentFile RunStages::student_with(const char* violations, const char* name) const {
+  StudentFile student = load_student(path(name));
+  student.certificate.counterexamples =
+      parse_counterexamples_csv(read_file(path(violations)), path(violations).string());
   return student;
 }
 
 void RunStages::fail_the_proof() {
   const std::string rounds = path(kProofRounds).string();
   const std::string what = describe_failed_proof(
-      unproved_student(), parse_proof_rounds_csv(read_file(rounds), rounds), config_.distil.method);
+      student_with(kUnprovedViolations, kUnprovedStudent),
+      parse_proof_rounds_csv(read_file(rounds), rounds), config_.distil.method);
   if (record_.is_lean()) throw ProofFailed(what);
   const Stage& failure = stage_named(kFailureStage);
   announce(failure);
@@ -403,7 +404,7 @@ void RunStages::fail_the_proof() {
 
 /// The same page for an unproved student.
 RunStages::Names RunStages::make_failure_report() {
-  RunResults run = results(unproved_student());
+  RunResults run = results(student_with(kUnprovedViolations, kUnprovedStudent));
   run.evaluations = evaluate_run(run, config_.train.threads);
   return write_run_report(std::move(run), config_, folder_);
 }
@@ -435,10 +436,7 @@ RunResults RunStages::results(StudentFile corrected) {
   if (fs::exists(path(kCheckpoints))) {  // missing in older runs
     results.checkpoints = parse_student_checkpoints_csv(text(kCheckpoints), kCheckpoints);
   }
-  if (record_.is_lean()) return results;
-  results.plain = load_student(path(kPlainStudent));
-  results.plain->certificate.counterexamples =
-      parse_counterexamples_csv(text(kPlainViolations), path(kPlainViolations).string());
+  if (!record_.is_lean()) results.plain = student_with(kPlainViolations, kPlainStudent);
   return results;
 }
 
