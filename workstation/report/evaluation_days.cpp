@@ -15,23 +15,18 @@ namespace bess {
 
 namespace {
 
-/// Splits as in ../data/env/market_steps.cpp.
+/// Splits as in ../data/env/market_steps.cpp, in the order of Split.
 struct SplitMeaning {
-  Split split;
   const char* name;
   const char* local_days;
 };
 constexpr SplitMeaning kMeanings[] = {
-    {Split::kTrain, "Training days", "1 to 20"},
-    {Split::kValidation, "Validation days", "21 to 25"},
-    {Split::kTest, "Test days", "26 to the end"},
-    {Split::kHeldOut, "Validation and test days", "21 to the end"},
-    {Split::kAll, "All days", "1 to the end"},
+    {"Training days", "1 to 20"},   {"Validation days", "21 to 25"},
+    {"Test days", "26 to the end"}, {"Validation and test days", "21 to the end"},
+    {"All days", "1 to the end"},
 };
 
-const SplitMeaning& meaning_of(Split split) {
-  return *std::ranges::find(kMeanings, split, &SplitMeaning::split);
-}
+const SplitMeaning& meaning_of(Split split) { return kMeanings[static_cast<std::size_t>(split)]; }
 
 }  // namespace
 

@@ -29,10 +29,6 @@ double total_eur(const Evaluation& evaluation) {
   return sum;
 }
 
-std::string change_of(const DifferingDecision& d) {
-  return fmt::format("{} -> {}", action_name(d.before), action_name(d.now));
-}
-
 }  // namespace
 
 CandidateRun judge_refit(const StudentFile& before, const StudentFile& now,
@@ -84,7 +80,9 @@ std::string candidate_text(const CandidateRun& candidate) {
   text +=
       fmt::format("  {} of {} decisions differ\n", candidate.differing.size(), candidate.decisions);
   std::map<std::string, int> changes;
-  for (const DifferingDecision& d : candidate.differing) ++changes[change_of(d)];
+  for (const DifferingDecision& d : candidate.differing) {
+    ++changes[fmt::format("{} -> {}", action_name(d.before), action_name(d.now))];
+  }
   for (const auto& [change, count] : changes) text += fmt::format("  {:>9} {}\n", count, change);
   return text;
 }
