@@ -71,8 +71,8 @@ class RunStages {
   Names make_plain_student();
   Names make_corrected_student();
   [[noreturn]] void fail_the_proof();
-  /// Student of one file with the violations of another.
-  [[nodiscard]] StudentFile student_with(const char* violations, const char* student) const;
+  /// Student `name` with the violations of another file.
+  [[nodiscard]] StudentFile student_with(const char* violations, const char* name) const;
   Names make_failure_report();
   Names make_header();
   Names make_evaluation();
