@@ -10,7 +10,6 @@
 #include "workstation/base/answer.h"
 #include "workstation/cli/commands.h"
 #include "workstation/runs/log/log_input.h"
-#include "workstation/runs/log/log_replay.h"
 
 namespace bess {
 namespace {

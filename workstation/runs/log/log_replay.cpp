@@ -1,4 +1,4 @@
-#include "workstation/runs/log/log_replay.h"
+#include "workstation/runs/log/log_input.h"
 
 #include <fmt/format.h>
 

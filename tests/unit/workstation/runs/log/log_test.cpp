@@ -11,7 +11,6 @@
 #include "tests/support/tokens.h"
 #include "tests/support/user_error_of.h"
 #include "workstation/runs/log/log_input.h"
-#include "workstation/runs/log/log_replay.h"
 
 namespace bess {
 namespace {
