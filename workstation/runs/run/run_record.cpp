@@ -135,17 +135,16 @@ Entries identity_of(const RunConfig& config, const std::string& prices_hash,
 }
 
 Entries configuration_of(const Entries& identity) {
-  Entries kept;
-  std::ranges::copy_if(identity, std::back_inserter(kept),
-                       [](const auto& entry) { return entry.first.starts_with('['); });
+  Entries kept = identity;
+  std::erase_if(kept, [](const auto& entry) { return !entry.first.starts_with('['); });
   return kept;
 }
 
 Entries circumstances_of(const Entries& identity) {
-  Entries kept;
-  std::ranges::copy_if(identity, std::back_inserter(kept), [](const auto& entry) {
-    return entry.first.starts_with("[market]") || entry.first.starts_with("[battery]") ||
-           entry.first.starts_with("[costs]");
+  Entries kept = identity;
+  std::erase_if(kept, [](const auto& entry) {
+    return !entry.first.starts_with("[market]") && !entry.first.starts_with("[battery]") &&
+           !entry.first.starts_with("[costs]");
   });
   return kept;
 }

@@ -50,9 +50,9 @@ Entries learnt_for_of(const std::filesystem::path& model) {
 
 std::string learnt_otherwise(const Entries& there, const Entries& here) {
   if (there.empty()) return {};
-  Entries of_both;
-  std::ranges::copy_if(there, std::back_inserter(of_both), [&](const auto& entry) {
-    return std::ranges::find(here, entry.first, &Entries::value_type::first) != here.end();
+  Entries of_both = there;
+  std::erase_if(of_both, [&](const auto& entry) {
+    return std::ranges::find(here, entry.first, &Entries::value_type::first) == here.end();
   });
   return differences(with_defaults(std::move(of_both), here), here);
 }
