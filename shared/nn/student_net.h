@@ -145,7 +145,7 @@ constexpr std::uint32_t student_weights_hash(const StudentNet& net) {
 }
 
 /// Quartile (1 to 3) of the training prices, whole EUR/MWh, from the price map: half their
-/// distribution, half a straight line over the lattice (workstation/policy/rl/price_map.h).
+/// distribution, half a straight line over the lattice (workstation/policy/rl/network_input.h).
 constexpr std::int32_t learnt_price_quartile(const StudentNet& net, int quartile) {
   constexpr std::int32_t kSteps = kPriceCount - 1;
   for (std::int32_t step = 0; step < kSteps; ++step) {

@@ -6,7 +6,7 @@
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
-#include "shared/nn/learnt_prices.h"
+#include "shared/nn/student_net.h"
 #include "workstation/base/answer.h"
 #include "workstation/cli/commands.h"
 #include "workstation/runs/log/log_input.h"

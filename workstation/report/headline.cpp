@@ -312,10 +312,10 @@ Table rule_prices_table(const RulePrices& prices) {
                   [w](const P& p) { return p.gain->difference[w].mean; }},
                  parts);
     table.add<P>({{key + "_standard_error", "s.e.", "{:.1f}", 4},
-                  [w](const P& p) { return p.gain->difference[w].standard_error; }},
+                  [w](const P& p) { return p.gain->difference[w].errors.plain; }},
                  parts);
     table.add<P>({{key + "_standard_error_by_month", "by month", "{:.1f}", 4},
-                  [w](const P& p) { return p.gain->difference[w].standard_error_by_month; }},
+                  [w](const P& p) { return p.gain->difference[w].errors.by_month; }},
                  parts);
     table.add<P>({{"", "", "", 0, "W" + wear.substr(1) + ", EUR/day/MWh"},
                   [w](const P& p) { return difference_text(p.gain->difference[w]); }},

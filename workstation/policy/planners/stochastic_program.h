@@ -102,7 +102,10 @@ struct PriceLevels {
   double mean;                 ///< of the fitted steps
   std::vector<double> levels;  ///< evenly spaced within three standard deviations of it
 };
-PriceLevels fit_levels(const MarketSteps& market, const std::vector<MarketDay>& days);
+inline constexpr int kLevelCount = 5;
+/// (As a constant of this function, the count would let the compiler round the last bit otherwise.)
+PriceLevels fit_levels(const MarketSteps& market, const std::vector<MarketDay>& days,
+                       int level_count);
 
 DeviationChain::BinPosition between_levels(const std::vector<double>& levels, double level);
 
