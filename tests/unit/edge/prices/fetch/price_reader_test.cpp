@@ -121,7 +121,9 @@ TEST_F(PriceReaderTest, AStudentByOutlookNeedsAPlanOfItsOwnModel) {
   EXPECT_EQ(reader.latest().status, Status::kOtherVersion);
   publisher_.publish([](PublishedPrices& prices) { prices.model_hash = model.hash(); });
   EXPECT_FALSE(reader.latest().has_row);
-  publisher_.publish_outlook({.model = &model});
+  static OutlookExchange exchange;
+  exchange.model = &model;
+  publisher_.publish_outlook(exchange);
   EXPECT_EQ(reader.latest().status, Status::kOk);
   EXPECT_TRUE(reader.latest().has_row);
 }
