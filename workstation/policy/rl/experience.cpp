@@ -61,7 +61,7 @@ double TrainingMarket::make_transition(std::size_t index, double soc_frac, Actio
   write_input(seen(step.context, step.row, soc_frac), soc_frac, out.state);
   write_input(seen(step.next, step.next_row, moved.soc_frac), moved.soc_frac, out.next_state);
   // r = -p * price in EUR/h for a battery of the paper's 4 MW: scaled by P, so that the same
-  // support and learning rate serve every size [SPEC 3, 4]. Money as in exchange_cost_eur, in float.
+  // support and learning rate serve every size [SPEC 3, 4]. Money as exchange_cost_eur, in float.
   const auto power_frac = static_cast<float>(moved.power_w / battery_.power_w_max);
   const auto wear = static_cast<float>(battery_.wear_eur_per_mwh);
   const float price = power_frac > 0 ? step.import_eur_per_mwh : step.export_eur_per_mwh;
