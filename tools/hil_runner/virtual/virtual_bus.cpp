@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "edge/core/base/check.h"
 #include "shared/host/user_error.h"
 #include "shared/scaled_clock.h"
 
@@ -34,7 +35,7 @@ VirtualBus::VirtualBus(const VirtualBusSettings& settings, const RegisterMap& ma
       context_(make_context(settings.rtu, map.unit)),
       device_(map, battery, context_.get(), settings.faults, settings.rtu, settings.start_utc_ns,
               house) {
-  buses().emplace(settings.port, this);
+  BESS_CHECK(buses().emplace(settings.port, this).second);
 }
 
 VirtualBus::~VirtualBus() { buses().erase(settings_.port); }

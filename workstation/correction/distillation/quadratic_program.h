@@ -240,7 +240,7 @@ class QuadraticProgram {
   std::vector<int> moved_;              ///< variables that a step moves
   std::vector<ClashingRow> clash_;
   Eigen::VectorXd free_minimum_;  ///< g [n]
-  Eigen::VectorXd x_, z_, r_;     ///< [n], z and r as in active_set_factors.h
+  Eigen::VectorXd x_, z_, r_;     ///< [n], z and r of the factors
   Eigen::VectorXd multipliers_;   ///< [rows] of the rows as given
   Eigen::VectorXd slacks_;        ///< [rows] of the scaled rows at x
   Eigen::VectorXd sizes_;         ///< [rows] sum of their terms' sizes; empty if dense_ is

@@ -6,6 +6,8 @@
 
 #include <set>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "edge/records/log/log_text.h"
 #include "edge/records/log/record_codec.h"
@@ -17,6 +19,27 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
+
+/// Names of the codes from 0, as older versions have written them. New ones are appended.
+template <typename Enum>
+void expect_codes(const std::vector<std::string>& names) {
+  ASSERT_EQ(static_cast<int>(names.size()), count_of(Enum{}));
+  for (std::size_t code = 0; code < names.size(); ++code) {
+    EXPECT_EQ(name_of_code<Enum>(static_cast<std::int64_t>(code)), names[code]);
+  }
+}
+
+TEST(RecordCodes, AreThoseOfOldLogs) {
+  expect_codes<Mode>({"start", "running", "holding", "safe", "stopping"});
+  expect_codes<Action>({"discharge", "idle", "charge"});
+  expect_codes<OutlookSource>({"none", "planned", "usual", "late", "missing"});
+  expect_codes<Status>({"ok",          "not_connected",   "timeout",      "bus_exception",
+                        "bus_busy",    "not_permitted",   "bad_reply",    "implausible",
+                        "not_applied", "not_expressible", "write_budget", "name_unresolved",
+                        "tls_refused", "http_error",      "malformed",    "no_row",
+                        "too_large",   "no_memory",       "too_late",     "server_busy",
+                        "no_fetcher",  "other_version",   "doubtful_unit"});
+}
 
 /// Only the flags without which a value does not exist.
 CycleRecord bare_record() {
