@@ -13,6 +13,7 @@
 #include "shared/scaled_clock.h"
 #include "shared/utc_text.h"
 #include "tests/support/csv_rows.h"
+#include "tests/support/loopback_socket.h"
 #include "tests/support/programs_under_test.h"
 #include "tests/support/temporary_folder.h"
 #include "tools/simulators/site/controller_settings.h"
@@ -28,8 +29,10 @@ class SimulatedSite : public FolderOfASite, public SitePrograms {
  public:
   static constexpr std::int64_t kStartS = 1'679'788'800;  ///< 2023-03-26T00:00:00Z
 
-  /// Simulated time starts half a second from now.
+  /// Simulated time starts half a second from now. Without a simulated battery nothing listens on
+  /// its port, which is this site's own: controllers lock it.
   explicit SimulatedSite(std::int32_t time_scale) : SitePrograms(sim_program(), folder.file("")) {
+    battery_port = free_port();
     clock = {.anchor_utc_s = kStartS, .scale = time_scale};
     start_clock();
   }
