@@ -3,7 +3,6 @@
 
 #include "edge/app/commands/command.h"
 #include "edge/records/account/day_accounts.h"
-#include "edge/records/account/earnings.h"
 #include "edge/records/log/journal.h"
 #include "shared/local_time.h"
 
@@ -41,7 +40,7 @@ std::string complaint(const std::string& text) {
 }
 
 std::string span_text(std::int32_t first_day, std::int32_t last_day) {
-  return DayAccount(first_day).date() + " to " + DayAccount(last_day).date();
+  return local_day_text(first_day) + " to " + local_day_text(last_day);
 }
 
 /// First and last day of the log.
@@ -62,14 +61,15 @@ int run_earned(const EarnedOptions& options, SettingsFile& settings) {
   MoneyTerms terms{.capacity_wh = config.battery.capacity_wh};
   const std::string trouble = terms.settled.read(state_file(config, "settled.csv").c_str());
   if (!trouble.empty()) report(JournalLevel::kWarning, "%s", trouble.c_str());
-  const Earnings earnings(accounts_of_days(log, period.first_day, period.last_day, terms));
-  if (earnings.days().empty()) {
+  const std::vector<DayAccount> days =
+      accounts_of_days(log, period.first_day, period.last_day, terms);
+  if (days.empty()) {
     return failed("the log has no control cycle of " +
                   span_text(period.first_day, period.last_day) + held_text(log));
   }
-  const std::string text = options.csv    ? earnings.csv()
-                           : options.json ? earnings.json().text()
-                                          : earnings.text();
+  const std::string text = options.csv    ? earnings_csv(days)
+                           : options.json ? earnings_json(days).text()
+                                          : earnings_text(days);
   std::fputs(text.c_str(), stdout);
   return end_of_output();
 }

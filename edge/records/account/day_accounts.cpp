@@ -114,13 +114,15 @@ void DayAccounts::add(const CycleRecord& as_logged) {
   CycleRecord record = as_logged;
   if (record.measurement.capacity_wh <= 0) record.measurement.capacity_wh = capacity_wh_;
   const std::int32_t day = local_day_at(record.utc_s);
-  if (day < first_day_) last_utc_s_ = DayAccount(first_day_).start_utc_s() - kSecondsPerStep;
+  if (day < first_day_) last_utc_s_ = local_day_start_utc_s(first_day_) - kSecondsPerStep;
   if (day >= first_day_ && day <= last_day_) {
-    DayAccount& account = days_.try_emplace(day, day).first->second;
+    DayAccount& account = days_.try_emplace(day, DayAccount{.local_day = day}).first->second;
     account.add(record);
     if (record.mode != Mode::kStopping) {
       const std::int64_t apart_s = record.utc_s - last_utc_s_;
-      if (apart_s > kSecondsPerStep) account.add_missing(apart_s / kSecondsPerStep - 1);
+      if (apart_s > kSecondsPerStep) {
+        account.missing_cycles += static_cast<int>(apart_s / kSecondsPerStep - 1);
+      }
       last_utc_s_ = record.utc_s;
     }
   }
@@ -136,10 +138,10 @@ std::vector<DayAccount> DayAccounts::accounts() const {
   const auto exchanged = exchanged_days(samples_, prices_, BatteryParameters{});
   std::vector<DayAccount> accounts;
   for (const auto& [day, account] : days_) {
-    if (account.is_empty()) continue;
+    if (account.cycles == 0) continue;
     accounts.push_back(account);
     const auto found = exchanged.find(day);
-    if (found != exchanged.end()) accounts.back().set_exchanged(found->second);
+    if (found != exchanged.end()) accounts.back().exchanged = found->second;
   }
   return accounts;
 }

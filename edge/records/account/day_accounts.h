@@ -1,8 +1,12 @@
-// Accounts of local days, from the decision log.
+// Accounts of local days, from the decision log, and their earnings as text, CSV and JSON. Each
+// quarter-hour counts at its settled price, or, as an estimate, at its last indicative price. The
+// change in stored energy is valued at the mean price, because a day that ends empty has sold energy
+// that another day bought.
 #pragma once
 
 #include <cstdint>
 #include <map>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -10,6 +14,7 @@
 #include "edge/records/account/settled_prices.h"
 #include "edge/records/log/log_reader.h"
 #include "shared/host/exchange.h"
+#include "shared/host/json.h"
 
 namespace bess {
 
@@ -57,5 +62,12 @@ class DayAccounts {
 /// Days from `first_day` to `last_day` with a control cycle in the log, oldest first.
 std::vector<DayAccount> accounts_of_days(const LogReader& log, std::int32_t first_day,
                                          std::int32_t last_day, const MoneyTerms& terms);
+
+// Of days, oldest first; may be empty.
+
+DayAccount sum_of(const std::vector<DayAccount>& days);
+std::string earnings_text(const std::vector<DayAccount>& days);
+std::string earnings_csv(const std::vector<DayAccount>& days);
+Json earnings_json(const std::vector<DayAccount>& days);
 
 }  // namespace bess

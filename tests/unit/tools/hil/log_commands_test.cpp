@@ -152,8 +152,8 @@ class SameDays {
   }
 
   [[nodiscard]] double settled_eur(const Days& days) const {
-    return settled_by_record(evidence_, prices_, DayAccount(days.first).start_utc_s(),
-                             DayAccount(days.behind).start_utc_s())
+    return settled_by_record(evidence_, prices_, local_day_start_utc_s(days.first),
+                             local_day_start_utc_s(days.behind))
         .profit_eur;
   }
 

@@ -10,7 +10,6 @@
 
 #include "edge/records/account/day_account.h"
 #include "edge/records/account/day_accounts.h"
-#include "edge/records/account/earnings.h"
 #include "edge/records/log/ring_log.h"
 #include "shared/host/json.h"
 #include "shared/host/minute_file.h"
@@ -102,10 +101,10 @@ struct Month {
   MoneyTerms terms;
   Account record;
 
-  [[nodiscard]] Earnings statement() const {
+  [[nodiscard]] std::vector<DayAccount> days() const {
     DayAccounts day_accounts(kFirstDay, kLastDay, terms);
     for (const CycleRecord& cycle : outcome.evidence.log) day_accounts.add(cycle);
-    return Earnings(day_accounts.accounts());
+    return day_accounts.accounts();
   }
 };
 
@@ -121,8 +120,8 @@ Month run_month(const std::string& parts) {
   EXPECT_TRUE(month.outcome.skipped.empty()) << month.outcome.skipped;
   month.terms = terms_of(month.prices);
   month.record =
-      settled_by_record(month.outcome.evidence, month.prices, DayAccount(kFirstDay).start_utc_s(),
-                        DayAccount(20'230'401).start_utc_s());
+      settled_by_record(month.outcome.evidence, month.prices, local_day_start_utc_s(kFirstDay),
+                        local_day_start_utc_s(20'230'401));
   return month;
 }
 
@@ -140,8 +139,8 @@ TEST(StatementOfAMonth, IsThatOfTheBatterysOwnRecord) {
     const double apart = map == "victron_ess3" ? 1.5 * kOfTheMoney : kOfTheMoney;
     const Month& month = undisturbed(map);
     EXPECT_TRUE(month.outcome.passed()) << complaint(month.outcome);
-    const DayAccount statement = month.statement().together();
-    const QuarterHourMoney money = statement.money();
+    const DayAccount statement = sum_of(month.days());
+    const QuarterHourMoney money = statement.exchanged.money;
     EXPECT_NEAR(money.earned_eur, month.record.profit_eur, apart * month.record.profit_eur);
     EXPECT_EQ(money.quarter_hours, 31 * 96 - 4);
     EXPECT_EQ(money.published, money.quarter_hours);
@@ -152,7 +151,7 @@ TEST(StatementOfAMonth, IsThatOfTheBatterysOwnRecord) {
 
 TEST(StatementOfAMonth, CountsBothDirections) {
   const Month& month = undisturbed("alphaess");
-  const DayAccount statement = month.statement().together();
+  const DayAccount statement = sum_of(month.days());
   const Directions hand = by_hand(month.scenario, month.outcome.evidence);
   EXPECT_NEAR(statement.charged_kwh(), hand.charged_wh / 1'000, hand.charged_wh / 1e6);
   EXPECT_NEAR(statement.discharged_kwh(), hand.discharged_wh / 1'000, hand.discharged_wh / 1e6);
@@ -160,13 +159,13 @@ TEST(StatementOfAMonth, CountsBothDirections) {
 
 TEST(StatementOfAMonth, WithAGapRestartsAMeterCutAndAClockChange) {
   const Month month = run_month(kDisturbed);
-  const Earnings earnings = month.statement();
-  const DayAccount& statement = earnings.together();
-  EXPECT_NEAR(statement.money().earned_eur, month.record.profit_eur,
+  const std::vector<DayAccount> days = month.days();
+  const DayAccount statement = sum_of(days);
+  EXPECT_NEAR(statement.exchanged.money.earned_eur, month.record.profit_eur,
               kOfTheMoney * month.record.profit_eur);
   EXPECT_GT(statement.unseen_kwh(), 0);
   EXPECT_LT(statement.unseen_kwh(), 2);
-  EXPECT_EQ(earnings.days().size(), 31u);
+  EXPECT_EQ(days.size(), 31u);
 }
 
 }  // namespace
