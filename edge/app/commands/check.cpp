@@ -96,17 +96,9 @@ void print_training(const EdgeConfig& config) {
       cycles_e2 / 100.0);
 }
 
-void print_thresholds(const EdgeConfig& config) {
-  const ThresholdNote note =
-      compare_thresholds(config.control.guard.thresholds, student_thresholds());
-  if (note.agree) return static_cast<void>(std::printf("guard      %s\n", note.text.c_str()));
-  report(JournalLevel::kWarning, "note: %s", note.text.c_str());
-}
-
-void print_transport(const EdgeConfig& config) {
-  const TransportNote note = transport_note(config.price);
-  if (!note.is_open) return static_cast<void>(std::printf("transport  %s\n", note.text.c_str()));
-  report(JournalLevel::kWarning, "note: %s", note.text.c_str());
+void print_note(const char* head, const SettingsNote& note) {
+  if (note.is_warning) return report(JournalLevel::kWarning, "note: %s", note.text.c_str());
+  std::printf("%-10s %s\n", head, note.text.c_str());
 }
 
 /// A missing sign check prevents control, but not read-only operation.
@@ -205,8 +197,8 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, const std::s
   for (const RetiredKey& old : config.retired) {
     report(JournalLevel::kWarning, "note: %s", retired_key_text(old).c_str());
   }
-  print_thresholds(config);
-  print_transport(config);
+  print_note("guard", compare_thresholds(config.control.guard.thresholds, student_thresholds()));
+  print_note("transport", transport_note(config.price));
   const std::int64_t now_utc_s = utc_seconds(config.clock);
   const Hold hold = read_newest_hold(state_file_paths(config, kHoldFileName)).hold;
   std::fputs(operator_note(config.control, hold, now_utc_s).c_str(), stdout);

@@ -53,7 +53,11 @@ bool RealWorld::open() {
     complain(JournalLevel::kError, refusal);
     return false;
   }
-  if (config_.control.control) report_commission_losses(config_);
+  if (config_.control.control) {
+    for (const std::string& line : repair_commission_file(config_)) {
+      complain(JournalLevel::kError, line);
+    }
+  }
   published_ = published_log_number(config_);
   FileMessage error;
   if (log_.open(config_.log, identity_of_run(config_), error)) return true;
@@ -61,7 +65,26 @@ bool RealWorld::open() {
   return false;
 }
 
-RestoredState RealWorld::restore_state() { return restore_at_start(config_, log_, published_); }
+RestoredState RealWorld::restore_state() {
+  const StateFilePaths paths = state_file_paths(config_, kClearedFileName);
+  for (const FixedText<639>* path : {&paths.state, &paths.run}) {
+    if (!read_cleared(path->c_str()).unreadable) continue;
+    report(JournalLevel::kError, "%s is malformed: trips cleared there are active again",
+           path->c_str());
+  }
+  RestoredState restored = bess::restore_state(log_.ring(), log_.run_ring(), published_, paths);
+  if (restored.unknown.empty()) return restored;
+  const char* const what = restored.unknown.c_str();
+  if (restored.trip) {
+    report(JournalLevel::kError,
+           "state: %s: full-cycle budget and price level of earlier runs are unknown", what);
+    return restored;
+  }
+  report(JournalLevel::kError,
+         "state: %s: a trip may be lost, so there is no control until bess-edge clear --yes", what);
+  restored.trip = trip_without_state(restored, utc_seconds(config_.clock));
+  return restored;
+}
 
 const LatestHold& RealWorld::listen() {
   hold_watch_.start(state_file_paths(config_, kHoldFileName),
@@ -95,8 +118,12 @@ void RealWorld::begins() {
   const bool is_in_control = config_.control.control;
   write_journal_line(JournalLevel::kNotice,
                      is_in_control ? "started: in control" : "started: read-only");
-  journal_thresholds(config_);
-  journal_transport(config_);
+  const SettingsNote thresholds =
+      compare_thresholds(config_.control.guard.thresholds, student_thresholds());
+  if (!thresholds.is_warning) write_line(JournalLevel::kInfo, "guard: " + thresholds.text);
+  for (const SettingsNote& note : {thresholds, transport_note(config_.price)}) {
+    if (note.is_warning) complain(JournalLevel::kWarning, "note: " + note.text);
+  }
   if (is_in_control) release_if_a_check_fails(battery());
 }
 

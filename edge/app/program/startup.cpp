@@ -4,7 +4,6 @@
 #include <sys/prctl.h>
 
 #include "edge/app/settings/price_config.h"
-#include "edge/app/storage/commission_file.h"
 #include "edge/core/control/decision_signature.h"
 #include "edge/core/control/policy.h"
 #include "edge/prices/record/price_settings.h"
@@ -32,46 +31,6 @@ bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& 
   if (found.status == Status::kOk) return true;
   report(JournalLevel::kError, "battery at %s", found.trouble.c_str());
   return false;
-}
-
-void report_commission_losses(const EdgeConfig& config) {
-  for (const std::string& line : repair_commission_file(config)) {
-    report(JournalLevel::kError, "%s", line.c_str());
-  }
-}
-
-RestoredState restore_at_start(const EdgeConfig& config, const EventLog& log,
-                               std::uint64_t published_number) {
-  const StateFilePaths paths = state_file_paths(config, kClearedFileName);
-  for (const FixedText<639>* path : {&paths.state, &paths.run}) {
-    if (!read_cleared(path->c_str()).unreadable) continue;
-    report(JournalLevel::kError, "%s is malformed: trips cleared there are active again",
-           path->c_str());
-  }
-  RestoredState restored = restore_state(log.ring(), log.run_ring(), published_number, paths);
-  if (restored.unknown.empty()) return restored;
-  const char* const what = restored.unknown.c_str();
-  if (restored.trip) {
-    report(JournalLevel::kError,
-           "state: %s: full-cycle budget and price level of earlier runs are unknown", what);
-    return restored;
-  }
-  report(JournalLevel::kError,
-         "state: %s: a trip may be lost, so there is no control until bess-edge clear --yes", what);
-  restored.trip = trip_without_state(restored, utc_seconds(config.clock));
-  return restored;
-}
-
-void journal_thresholds(const EdgeConfig& config) {
-  const ThresholdNote note =
-      compare_thresholds(config.control.guard.thresholds, student_thresholds());
-  if (!note.agree) return report(JournalLevel::kWarning, "note: %s", note.text.c_str());
-  write_journal_line(JournalLevel::kInfo, "guard: " + note.text);
-}
-
-void journal_transport(const EdgeConfig& config) {
-  const TransportNote note = transport_note(config.price);
-  if (note.is_open) report(JournalLevel::kWarning, "note: %s", note.text.c_str());
 }
 
 std::string decision_signature_line() {
@@ -201,9 +160,9 @@ std::string agreement(const PriceThresholds& both) {
 
 }  // namespace
 
-ThresholdNote compare_thresholds(const PriceThresholds& guard, const PriceThresholds& proved) {
-  if (guard == proved) return {true, agreement(guard)};
-  ThresholdNote note;
+SettingsNote compare_thresholds(const PriceThresholds& guard, const PriceThresholds& proved) {
+  if (guard == proved) return {.text = agreement(guard)};
+  SettingsNote note{.is_warning = true};
   add_difference(
       {"[guard] low_price_eur_per_mwh", "charge", guard.low_eur_per_mwh, proved.low_eur_per_mwh,
        guard.low_eur_per_mwh > proved.low_eur_per_mwh, proved.low_binds_student()},

@@ -1,4 +1,4 @@
-// Start-up before the loop: student, process, battery, restored state, price level. Writes nothing
+// Start-up before the loop: student, process, battery, price level. Writes nothing
 // to the battery.
 #pragma once
 
@@ -7,7 +7,6 @@
 #include "edge/app/program/edge_clock.h"
 #include "edge/app/program/find_battery.h"
 #include "edge/app/settings/edge_config.h"
-#include "edge/app/storage/restored_state.h"
 #include "edge/core/base/status.h"
 #include "edge/core/control/hold.h"
 #include "edge/core/control/level_start.h"
@@ -15,7 +14,6 @@
 #include "edge/core/loop/control_settings.h"
 #include "edge/device/battery/modbus_battery.h"
 #include "edge/prices/record/published_prices.h"
-#include "edge/records/log/event_log.h"
 #include "edge/records/log/journal.h"
 #include "shared/context_classes.h"
 #include "shared/price_thresholds.h"
@@ -27,20 +25,6 @@ void prepare_process();
 
 /// True if found; else one line on stderr with the remedy.
 bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& clock);
-
-/// Restores lost or damaged copies of the commissioning result, with a journal line for each.
-void report_commission_losses(const EdgeConfig& config);
-
-/// Restores the state of earlier runs. If it is unreadable, a journal line has the cause, and there
-/// is no control until a person clears it. `published_number`: restored_state.h.
-RestoredState restore_at_start(const EdgeConfig& config, const EventLog& log,
-                               std::uint64_t published_number);
-
-/// One journal line: price thresholds of guard and student's proof.
-void journal_thresholds(const EdgeConfig& config);
-
-/// One journal line if prices could be forged in transit.
-void journal_transport(const EdgeConfig& config);
 
 /// Output of the signature command.
 std::string decision_signature_line();
@@ -71,12 +55,7 @@ std::string operator_note(const ControlSettings& control, const Hold& hold, std:
 /// Comparison of the guard's price thresholds (configuration) with those of the student's proof
 /// (weights). Between different thresholds only one of the two acts, or none. Reported at every
 /// start, never a refusal.
-struct ThresholdNote {
-  bool agree = false;
-  std::string text;  ///< one line: thresholds, or each difference
-};
-
-ThresholdNote compare_thresholds(const PriceThresholds& guard, const PriceThresholds& proved);
+SettingsNote compare_thresholds(const PriceThresholds& guard, const PriceThresholds& proved);
 
 /// Price level to start with: from the log, or for a student by level from the prices of the last
 /// hours. `logged`: of the newest record. `price_server_status`: first price answer.

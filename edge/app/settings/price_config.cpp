@@ -121,14 +121,14 @@ void check_price_url(TomlTable& table, std::string_view key, std::string_view ur
   }
 }
 
-TransportNote transport_note(const PriceConfig& price) {
+SettingsNote transport_note(const PriceConfig& price) {
   UrlTransport weakest = transport_of(price.feed.http.url.view());
   if (!price.history.url.empty()) {
     weakest = std::max(weakest, transport_of(price.history.url.view()));
   }
   if (weakest == UrlTransport::kSecure) return {.text = "https"};
   if (weakest == UrlTransport::kLoopback) return {.text = "plain http on this machine"};
-  return {.is_open = true,
+  return {.is_warning = true,
           .text = "prices come over plain http (allow_http) and could be forged in transit"};
 }
 

@@ -44,12 +44,13 @@ void check_price_url(TomlTable& table, std::string_view key, std::string_view ur
 /// Loads the header file, if any, after all other checks.
 void load_headers(TomlTable& table, const PriceTransportKeys& keys, HttpSettings& http);
 
-struct TransportNote {
-  bool is_open = false;  ///< prices could be forged in transit
-  std::string text;
+/// Remark on settings, one line.
+struct SettingsNote {
+  bool is_warning = false;
+  std::string text{};
 };
 
-/// One line on the weaker transport of url and history_url.
-TransportNote transport_note(const PriceConfig& price);
+/// The weaker transport of url and history_url; a warning if prices could be forged in transit.
+SettingsNote transport_note(const PriceConfig& price);
 
 }  // namespace bess

@@ -33,11 +33,11 @@ TEST(ThresholdNote, NamesBothAndWhoDecidesBetweenThem) {
   std::set<std::string> texts;
   for (const ThresholdCase& c : cases) {
     SCOPED_TRACE(c.codes);
-    const ThresholdNote note = compare_thresholds(c.guard, c.proved);
+    const SettingsNote note = compare_thresholds(c.guard, c.proved);
     const std::string text(note.text);
-    EXPECT_EQ(note.agree, c.guard == c.proved);
+    EXPECT_EQ(note.is_warning, c.guard != c.proved);
     EXPECT_THAT(text, Names(c.codes));
-    EXPECT_EQ(has_code(text, "[guard]"), !note.agree);
+    EXPECT_EQ(has_code(text, "[guard]"), note.is_warning);
     std::string words;
     for (const char at : text)
       words += std::string("0123456789").find(at) == std::string::npos ? std::string(1, at) : "";

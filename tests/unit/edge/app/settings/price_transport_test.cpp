@@ -38,14 +38,14 @@ TEST_F(PriceTransport, PlainHttpToAnotherMachineNeedsTheKeyAndIsSaid) {
   EXPECT_THAT(error_, Names(path_ + ":4 [price] url allow_http = true"));
   EXPECT_FALSE(load("url = \"http://localhost/records\"\n"));
   ASSERT_TRUE(load("url = \"http://192.168.1.9/records\"\nallow_http = true\n")) << error_;
-  const TransportNote note = transport_note(config_.price);
-  EXPECT_TRUE(note.is_open);
+  const SettingsNote note = transport_note(config_.price);
+  EXPECT_TRUE(note.is_warning);
   EXPECT_THAT(note.text, Names("http"));
 }
 
 TEST_F(PriceTransport, InsideThisMachineAndOverTlsNoKeyIsNeeded) {
   ASSERT_TRUE(load("url = \"http://127.0.0.1:8080/records\"\n")) << error_;
-  EXPECT_FALSE(transport_note(config_.price).is_open);
+  EXPECT_FALSE(transport_note(config_.price).is_warning);
   EXPECT_THAT(transport_note(config_.price).text, Names("http"));
   ASSERT_TRUE(load("ca_file = \"headers\"\nurl = \"https://a.example/records\"\n")) << error_;
   EXPECT_EQ(transport_note(config_.price).text, "https");
@@ -59,7 +59,7 @@ TEST_F(PriceTransport, TheHistorysUrlIsHeldToTheSame) {
   EXPECT_FALSE(load(urls));
   EXPECT_THAT(error_, Names(path_ + ":4 [price] history_url allow_http"));
   ASSERT_TRUE(load(urls + "allow_http = true\n")) << error_;
-  EXPECT_TRUE(transport_note(config_.price).is_open);
+  EXPECT_TRUE(transport_note(config_.price).is_warning);
   EXPECT_FALSE(load(urls + "allow_http = true\nheader_file = \"headers\"\n"));
   EXPECT_THAT(error_, AllOf(Names("header_file"), Not(Names("allow_http"))));
 }
