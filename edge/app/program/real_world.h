@@ -47,6 +47,8 @@ class RealWorld {
 
   /// Checks the commissioning, then opens the log, so that a refused run keeps the previous status.
   bool open();
+  /// State of earlier runs. If it is unreadable, a journal line has the cause, and there is no
+  /// control until a person clears it.
   RestoredState restore_state();
   bool read_back(std::int64_t records, CycleRecord& record) const {
     return log_.read_back(records, record);

@@ -1,5 +1,4 @@
-// Start-up before the loop: student, process, battery, price level. Writes nothing
-// to the battery.
+// Start-up before the loop: student, process, battery, price level. Writes nothing to the battery.
 #pragma once
 
 #include <string>
