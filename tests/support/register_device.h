@@ -153,8 +153,8 @@ class DeviceLink {
   }
   void close() {}
   [[nodiscard]] int last_exception() const { return last_exception_; }
-  [[nodiscard]] LinkCounters counters() const {
-    LinkCounters counters = counters_;
+  [[nodiscard]] BatteryCounters counters() const {
+    BatteryCounters counters = counters_;
     counters.reconnects = device_.reconnects;
     return counters;
   }
@@ -167,7 +167,7 @@ class DeviceLink {
   }
 
   RegisterDevice& device_;
-  LinkCounters counters_;
+  BatteryCounters counters_;
   int last_exception_ = 0;
 };
 

@@ -70,7 +70,7 @@ void read_all_points(const RegisterMap& map, const PointPlaces& places, Bus& bus
 class Progress {
  public:
   explicit Progress(std::int64_t for_s) : for_s_(for_s), is_shown_(isatty(STDERR_FILENO) == 1) {}
-  void show(std::int64_t passed_s, const LinkCounters& counters) const {
+  void show(std::int64_t passed_s, const BatteryCounters& counters) const {
     if (!is_shown_ || passed_s < 2) return;
     std::fprintf(stderr,
                  "\rrecording  %" PRId64 " of %" PRId64 " s, %" PRId64
@@ -133,7 +133,7 @@ int run_record(const RecordOptions& options, SettingsFile& settings) {
   poll_device(options, config, bus, clock);
   bus.link().set_exchange_listener({});
   if (!recorder->finish(error)) return failed(error.c_str());
-  const LinkCounters& counters = bus.link().counters();
+  const BatteryCounters& counters = bus.link().counters();
   std::printf("recorded   %s: %" PRId64 " requests, %" PRId64
               " failed; nothing was written to %s\n",
               path.c_str(), counters.requests, counters.failed_requests,

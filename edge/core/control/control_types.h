@@ -47,9 +47,9 @@ struct BatteryMeasurement {
 
 /// Totals since start, and today's writes to flash registers.
 struct BatteryCounters {
-  std::int64_t requests = 0;
-  std::int64_t failed_requests = 0;
-  std::int64_t reconnects = 0;
+  std::int64_t requests = 0;          ///< sent, or not sent for lack of a connection
+  std::int64_t failed_requests = 0;   ///< without a good reply
+  std::int64_t reconnects = 0;        ///< connections after the first
   std::int64_t register_writes = 0;   ///< write requests that reached the device
   std::int64_t unchanged_orders = 0;  ///< orders already in force: nothing written
   std::int64_t flash_day = 0;         ///< UTC day (since 1970) that the next field counts

@@ -145,13 +145,9 @@ class BatteryDriver {
   }
 
   [[nodiscard]] BatteryCounters counters() const {
-    const LinkCounters link = bus_.link().counters();
-    BatteryCounters counters{.requests = link.requests,
-                             .failed_requests = link.failed_requests,
-                             .reconnects = link.reconnects,
-                             .register_writes = link.register_writes,
-                             .unchanged_orders = unchanged_orders_,
-                             .flash_day = bus_.time().utc_day()};
+    BatteryCounters counters = bus_.link().counters();
+    counters.unchanged_orders = unchanged_orders_;
+    counters.flash_day = bus_.time().utc_day();
     counters.flash_writes_today = runner_.budget().writes_on(counters.flash_day);
     return counters;
   }

@@ -14,6 +14,7 @@
 #include <cstdint>
 
 #include "edge/core/base/status.h"
+#include "edge/core/control/control_types.h"
 #include "edge/device/battery/link_state.h"
 #include "edge/device/battery/modbus_frame.h"
 #include "edge/device/battery/modbus_wire.h"
@@ -39,14 +40,6 @@ struct RegisterSpan {
   std::uint16_t address = 0;  ///< PDU address, 0-based
   std::uint16_t count = 0;
   std::uint8_t function = 3;  ///< 3 holding, 4 input
-};
-
-/// Totals since start.
-struct LinkCounters {
-  std::int64_t requests = 0;         ///< sent, or not sent for lack of a connection
-  std::int64_t failed_requests = 0;  ///< without a good reply
-  std::int64_t reconnects = 0;       ///< connections after the first
-  std::int64_t register_writes = 0;  ///< write requests that were sent
 };
 
 /// Observer of every request and its result, on the requesting thread: it must neither wait nor
@@ -76,7 +69,8 @@ class ModbusLink {
   /// Unit that answered the last request instead of the addressed one; -1: none.
   [[nodiscard]] int foreign_unit() const { return foreign_unit_; }
   [[nodiscard]] int asked_unit() const { return asked_unit_; }
-  [[nodiscard]] const LinkCounters& counters() const { return counters_; }
+  /// Without those of orders and flash registers.
+  [[nodiscard]] const BatteryCounters& counters() const { return counters_; }
 
  private:
   Status request(ModbusRequest request, std::uint16_t* registers, std::int64_t send_until_ns);
@@ -96,7 +90,7 @@ class ModbusLink {
   ModbusWire wire_;
   LinkStateMachine state_;
   UnansweredRequests unanswered_;
-  LinkCounters counters_;
+  BatteryCounters counters_;
   Status connect_status_ = Status::kNotConnected;  ///< of the last attempt to connect
   bool was_connected_ = false;
   int last_exception_ = 0;

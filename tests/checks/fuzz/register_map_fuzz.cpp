@@ -27,7 +27,7 @@ class AnyDevice {
   }
   void close() {}
   [[nodiscard]] int last_exception() const { return 0; }
-  [[nodiscard]] LinkCounters counters() const { return {}; }
+  [[nodiscard]] BatteryCounters counters() const { return {}; }
 
  private:
   std::uint16_t answer_;
