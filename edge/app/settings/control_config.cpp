@@ -37,8 +37,10 @@ void complete_link(TomlTable& table, BatteryLinkSettings& link, RegisterMap& map
   units.finish();
 }
 
-}  // namespace
+// Keys of a Modbus connection and its register map, the same in [battery] and [meter].
 
+/// Reads transport, host, port, device, baud, parity, stop_bits, unit and response_timeout_ms;
+/// load_linked_map reads units. Call before `finish`.
 void read_link(TomlTable& table, BatteryLinkSettings& link) {
   table.choice("transport", link.rtu, {"tcp", "rtu"});
   table.text("host", link.host);
@@ -52,6 +54,7 @@ void read_link(TomlTable& table, BatteryLinkSettings& link) {
   static_cast<void>(table.table("units"));
 }
 
+/// Rejects an impossible connection; call after `finish`.
 void check_link(TomlTable& table, const BatteryLinkSettings& link) {
   if (!is_serial_speed(link.baud)) {
     table.fail("baud", "must be a speed of serial lines such as 9600, 19200 or 115200");
@@ -63,6 +66,8 @@ void check_link(TomlTable& table, const BatteryLinkSettings& link) {
   }
 }
 
+/// Loads the map of the table, relative to its file, and completes `link` with the map's defaults.
+/// `path` is the map's. False with the table's error set.
 bool load_linked_map(TomlTable& table, std::string_view map_file, std::string_view variant,
                      BatteryLinkSettings& link, RegisterMap& map, FixedText<511>& path) {
   if (!table.ok()) return false;
@@ -78,8 +83,6 @@ bool load_linked_map(TomlTable& table, std::string_view map_file, std::string_vi
   complete_link(table, link, map);
   return table.ok();
 }
-
-namespace {
 
 constexpr std::int64_t kConnectionWMax = 100'000'000;
 

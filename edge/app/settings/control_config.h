@@ -13,20 +13,6 @@
 
 namespace bess {
 
-// Keys of a Modbus connection and its register map, the same in [battery] and [meter].
-
-/// Reads transport, host, port, device, baud, parity, stop_bits, unit and response_timeout_ms;
-/// load_linked_map reads units. Call before `finish`.
-void read_link(TomlTable& table, BatteryLinkSettings& link);
-
-/// Rejects an impossible connection; call after `finish`.
-void check_link(TomlTable& table, const BatteryLinkSettings& link);
-
-/// Loads the map of the table, relative to its file, and completes `link` with the map's defaults.
-/// `path` is the map's. False with the table's error set.
-bool load_linked_map(TomlTable& table, std::string_view map_file, std::string_view variant,
-                     BatteryLinkSettings& link, RegisterMap& map, FixedText<511>& path);
-
 struct SiteConfig {
   SiteSettings settings;
   BatteryLinkSettings link;  ///< of a separate meter

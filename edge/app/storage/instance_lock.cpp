@@ -17,17 +17,13 @@
 
 namespace bess {
 
+namespace {
+
+/// True for root and the user of this process.
 bool is_trusted(uid_t owner) { return owner == 0 || owner == geteuid(); }
 
-FileMessage foreign_file_error(const char* path) {
-  struct stat info {};
-  const bool is_known = lstat(path, &info) == 0;
-  return FileMessage(formatted(
-      "%.500s belongs to user %ld, not to root or the user of this bess-edge (%ld): remove "
-      "it, unless that user runs a bess-edge",
-      path, is_known ? static_cast<long>(info.st_uid) : -1L, static_cast<long>(geteuid())));
-}
-
+/// For a file that this process relies on or replaces: false with one line if it exists and belongs
+/// to another user. Checks a link itself.
 bool check_file_owner(const char* path, FileMessage& error) {
   struct stat info {};
   if (lstat(path, &info) != 0 || is_trusted(info.st_uid)) return true;
@@ -35,6 +31,8 @@ bool check_file_owner(const char* path, FileMessage& error) {
   return false;
 }
 
+/// For a file of root that this process may not open: false with one line and the command that
+/// removes it.
 bool check_root_leftover(const char* path, FileMessage& error) {
   struct stat info {};
   if (geteuid() == 0 || lstat(path, &info) != 0 || info.st_uid != 0) return true;
@@ -44,13 +42,6 @@ bool check_root_leftover(const char* path, FileMessage& error) {
                 path, path));
   return false;
 }
-
-bool is_believable(const char* path) {
-  struct stat file {};
-  return lstat(path, &file) != 0 || has_trusted_owner(file.st_uid, path);
-}
-
-namespace {
 
 /// Lock name of the battery. Serial devices by real path, because /dev/serial/by-id/... and
 /// /dev/ttyUSB0 may be one device; without the unit, because a line has one master.
@@ -76,6 +67,20 @@ bool lock_run_folder(const EdgeConfig& config, RunLocks& locks, FileMessage& err
 }
 
 }  // namespace
+
+FileMessage foreign_file_error(const char* path) {
+  struct stat info {};
+  const bool is_known = lstat(path, &info) == 0;
+  return FileMessage(formatted(
+      "%.500s belongs to user %ld, not to root or the user of this bess-edge (%ld): remove "
+      "it, unless that user runs a bess-edge",
+      path, is_known ? static_cast<long>(info.st_uid) : -1L, static_cast<long>(geteuid())));
+}
+
+bool is_believable(const char* path) {
+  struct stat file {};
+  return lstat(path, &file) != 0 || has_trusted_owner(file.st_uid, path);
+}
 
 FixedText<639> battery_lock_path(const EdgeConfig& config) {
   std::string name(lock_subject(config).view());

@@ -3,8 +3,6 @@
 // no effect. Lock and status files of other users are rejected.
 #pragma once
 
-#include <sys/stat.h>
-
 #include "edge/app/settings/edge_config.h"
 #include "edge/records/log/atomic_file.h"
 #include "shared/fixed_text.h"
@@ -14,19 +12,8 @@ namespace bess {
 // Owners of files: a lock or status of another user could prevent a start, or report a controller
 // that has ended.
 
-/// True for root and the user of this process.
-bool is_trusted(uid_t owner);
-
 /// "PATH belongs to user N, ...", with the remedy.
 FileMessage foreign_file_error(const char* path);
-
-/// For a file that this process relies on or replaces: false with one line if it exists and belongs
-/// to another user. Checks a link itself.
-bool check_file_owner(const char* path, FileMessage& error);
-
-/// For a file of root that this process may not open: false with one line and the command that
-/// removes it.
-bool check_root_leftover(const char* path, FileMessage& error);
 
 /// For a file that is only read: also accepts the owner of the folder, and a missing file.
 bool is_believable(const char* path);
