@@ -52,7 +52,7 @@ int complain(const std::string& text) {
 
 bool check_price(const EdgeConfig& config) {
   UnitWatch unit;
-  const PriceSource::Answer answer = PriceSource(config, {}).ask_first(unit);
+  const PriceReply answer = ask_first_price(config, unit);
   const Status status = unit.is_doubtful() ? Status::kDoubtfulUnit : answer.status;
   if (status != Status::kOk) {
     complain("price from " + std::string(loggable_url(config.price.feed.http.url.view()).view()) +
@@ -110,7 +110,7 @@ void run_beside(const EdgeConfig& config, PricePublisher& publisher, const std::
   const bool needs_level = student_context().kind != ContextKind::kMonth;
   PublishedHistory history{.is_done = true};
   if (needs_level && !knows_level(config)) {
-    history = find_history(config, PriceSource(config, stop));
+    history = find_history(config, stop);
   }
   publisher.publish([&](PublishedPrices& prices) { prices.history = history; });
   const OutlookModel* const model = student_outlook();

@@ -49,49 +49,53 @@ std::string text_of(const std::string& reason, Status status) {
   return reason.empty() ? std::string(status_text(status)) : reason;
 }
 
-}  // namespace
-
-PriceSource::Answer PriceSource::ask_first(UnitWatch& watch) const {
-  Answer answer = ask(watch, page_url(config_.price.feed.http.url.view(), 0));
-  // A server without pages may refuse them; a busy or unreachable one is not asked twice.
-  const bool may_know_no_pages =
-      answer.status == Status::kHttpError || answer.status == Status::kMalformed;
-  return may_know_no_pages ? ask(watch) : answer;
+FetchResult get(const EdgeConfig& config, const std::string& url, std::int32_t timeout_ms,
+                const std::stop_token& stop) {
+  return fetch(config.price.feed.http, url, timeout_ms, [&] { return stop.stop_requested(); });
 }
 
-PriceSource::Answer PriceSource::ask(UnitWatch& watch, const std::string& url) const {
-  const FetchResult fetched = get(url, config_.price.feed.http.timeout_ms);
-  Answer answer{.status = fetched.status, .reason = fetched.reason, .wait_s = fetched.wait_s};
-  if (fetched.status != Status::kOk) return answer;
+PriceReply ask(const EdgeConfig& config, const std::string& url, UnitWatch& watch,
+               const std::stop_token& stop) {
+  const FetchResult fetched = get(config, url, config.price.feed.http.timeout_ms, stop);
+  PriceReply reply{.status = fetched.status, .reason = fetched.reason, .wait_s = fetched.wait_s};
+  if (fetched.status != Status::kOk) return reply;
   auto [status, rows, items] =
-      parse_prices(fetched.body, config_.price.feed.fields, utc_seconds(config_.clock));
-  answer.status = status;
-  answer.passed_over = items - static_cast<int>(rows.size());
+      parse_prices(fetched.body, config.price.feed.fields, utc_seconds(config.clock));
+  reply.status = status;
+  reply.passed_over = items - static_cast<int>(rows.size());
   std::ranges::stable_sort(rows, {}, &PriceRow::minute_utc_s);
   for (const PriceRow& row : rows) watch.observe(row);
-  if (!rows.empty()) answer.newest = rows.back();
-  return answer;
+  if (!rows.empty()) reply.newest = rows.back();
+  return reply;
 }
 
-FetchResult PriceSource::get(const std::string& url, std::int32_t timeout_ms) const {
-  return fetch(config_.price.feed.http, url, timeout_ms, [this] { return stop_requested(); });
+}  // namespace
+
+PriceReply ask_price(const EdgeConfig& config, UnitWatch& watch, const std::stop_token& stop) {
+  return ask(config, config.price.feed.http.url.c_str(), watch, stop);
 }
 
-PriceAnswer PriceSource::fetch_page(const char* url, std::int32_t timeout_ms) const {
-  const FetchResult fetched = get(url, timeout_ms);
-  if (fetched.status != Status::kOk) return {.status = fetched.status};
-  return parse_prices(fetched.body, config_.price.feed.fields, utc_seconds(config_.clock));
+PriceReply ask_first_price(const EdgeConfig& config, UnitWatch& watch,
+                           const std::stop_token& stop) {
+  PriceReply reply = ask(config, page_url(config.price.feed.http.url.view(), 0), watch, stop);
+  const bool may_know_no_pages =
+      reply.status == Status::kHttpError || reply.status == Status::kMalformed;
+  return may_know_no_pages ? ask_price(config, watch, stop) : reply;
 }
 
-PublishedHistory find_history(const EdgeConfig& config, const PriceSource& source) {
-  return fetch_history(config.price, config.clock,
-                       std::bind_front(&PriceSource::fetch_page, &source),
-                       std::bind_front(&PriceSource::stop_requested, &source));
+PublishedHistory find_history(const EdgeConfig& config, const std::stop_token& stop) {
+  const auto fetch_page = [&](const char* url, std::int32_t timeout_ms) -> PriceAnswer {
+    const FetchResult fetched = get(config, url, timeout_ms, stop);
+    if (fetched.status != Status::kOk) return {.status = fetched.status};
+    return parse_prices(fetched.body, config.price.feed.fields, utc_seconds(config.clock));
+  };
+  return fetch_history(config.price, config.clock, fetch_page,
+                       [&] { return stop.stop_requested(); });
 }
 
 void PriceFetcher::run(const std::function<bool()>& is_over) {
   const std::int64_t begin_ns = clock_ns(CLOCK_MONOTONIC);
-  static_cast<void>(publish(source_.ask_first(unit_), begin_ns));
+  static_cast<void>(publish(ask_first_price(config_, unit_, stop_), begin_ns));
   std::int64_t served_utc_s = 0;
   while (!stop_.stop_requested()) {
     const std::int64_t tick_utc_s = std::max(
@@ -119,7 +123,7 @@ void PriceFetcher::serve(std::int64_t tick_utc_s) {
     if (at_utc_s >= tick_utc_s + kPriceWait_s && i > 0) break;
     if (at_utc_s >= tick_utc_s + kSecondsPerStep || !sleep_until(at_utc_s)) break;
     const std::int64_t begin_ns = clock_ns(CLOCK_MONOTONIC);
-    const PriceSource::Answer answer = publish(source_.ask(unit_), begin_ns);
+    const PriceReply answer = publish(ask_price(config_, unit_, stop_), begin_ns);
     is_found = answer.status == Status::kOk && answer.newest.minute_utc_s >= minute_utc_s;
     is_refused = is_refused || answer.status == Status::kServerBusy;
     const bool has_learnt = answer.status == Status::kOk || answer.status == Status::kNoRow;
@@ -129,7 +133,7 @@ void PriceFetcher::serve(std::int64_t tick_utc_s) {
   publisher_.publish([&](PublishedPrices& prices) { prices.served_minute_utc_s = minute_utc_s; });
 }
 
-PriceSource::Answer PriceFetcher::publish(PriceSource::Answer answer, std::int64_t begin_ns) {
+PriceReply PriceFetcher::publish(PriceReply answer, std::int64_t begin_ns) {
   if (stop_.stop_requested()) return answer;
   const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
   if (answer.status == Status::kOk && unit_.is_doubtful()) {

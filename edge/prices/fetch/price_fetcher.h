@@ -43,39 +43,28 @@ class PricePublisher {
   bool is_failing_ = false;
 };
 
-/// Price source: one request to the server at a time, on the caller's thread.
-class PriceSource {
- public:
-  PriceSource(const EdgeConfig& config, std::stop_token stop)
-      : config_(config), stop_(std::move(stop)) {}
+// Requests to the price server, one at a time, on the caller's thread.
 
-  struct Answer {
-    Status status = Status::kNotConnected;
-    PriceRow newest{};
-    int passed_over = 0;   ///< rows without a usable price
-    std::string reason{};  ///< for statuses other than kOk
-    double wait_s = 0;     ///< requested by the server
-  };
-  /// Passes each usable row to `watch`, oldest first.
-  Answer ask(UnitWatch& watch) const { return ask(watch, config_.price.feed.http.url.c_str()); }
-  /// First request, with more rows if the server has pages, so that a wrong unit shows early.
-  Answer ask_first(UnitWatch& watch) const;
-  /// For fetch_history.
-  [[nodiscard]] PriceAnswer fetch_page(const char* url, std::int32_t timeout_ms) const;
-  [[nodiscard]] bool stop_requested() const { return stop_.stop_requested(); }
-
- private:
-  [[nodiscard]] FetchResult get(const std::string& url, std::int32_t timeout_ms) const;
-  Answer ask(UnitWatch& watch, const std::string& url) const;
-
-  const EdgeConfig& config_;
-  std::stop_token stop_;
+struct PriceReply {
+  Status status = Status::kNotConnected;
+  PriceRow newest{};
+  int passed_over = 0;   ///< rows without a usable price
+  std::string reason{};  ///< for statuses other than kOk
+  double wait_s = 0;     ///< requested by the server
 };
+
+/// Passes each usable row to `watch`, oldest first.
+PriceReply ask_price(const EdgeConfig& config, UnitWatch& watch, const std::stop_token& stop = {});
+/// First request, with more rows if the server has pages, so that a wrong unit shows early.
+PriceReply ask_first_price(const EdgeConfig& config, UnitWatch& watch,
+                           const std::stop_token& stop = {});
+/// Price level of the hours before now; for a first start.
+PublishedHistory find_history(const EdgeConfig& config, const std::stop_token& stop = {});
 
 class PriceFetcher {
  public:
   PriceFetcher(const EdgeConfig& config, PricePublisher& publisher, std::stop_token stop)
-      : config_(config), publisher_(publisher), stop_(stop), source_(config, std::move(stop)) {}
+      : config_(config), publisher_(publisher), stop_(std::move(stop)) {}
 
   /// Runs until a stop request, or `is_over` after a cycle: one initial request, then those of each
   /// cycle.
@@ -83,22 +72,18 @@ class PriceFetcher {
 
  private:
   void serve(std::int64_t tick_utc_s);
-  PriceSource::Answer publish(PriceSource::Answer answer, std::int64_t begin_ns);
+  PriceReply publish(PriceReply answer, std::int64_t begin_ns);
   /// Sleeps in slices; false on a stop request. A clock step backwards ends the wait.
   bool sleep_until(std::int64_t utc_s) const;
 
   const EdgeConfig& config_;
   PricePublisher& publisher_;
   std::stop_token stop_;
-  PriceSource source_;
   AskTiming timing_;
   UnitWatch unit_;
   Status reported_ = Status::kOk;      ///< status of the last line in the journal
   std::int64_t not_before_utc_s_ = 0;  ///< requested by the server
   std::int64_t busy_utc_s_ = 0;        ///< time of that request
 };
-
-/// Price level of the hours before now; for a first start.
-PublishedHistory find_history(const EdgeConfig& config, const PriceSource& source);
 
 }  // namespace bess

@@ -276,7 +276,7 @@ TEST(PriceLevelHistory, FetchedFromBessSimEqualsTheWorkstations) {
   config->clock = clock;
   config->price.feed.http.url = FixedText<511>(root + "ods161" + order);
   config->price.history.url = FixedText<511>(root + "ods133" + order);
-  const PublishedHistory history = find_history(*config, PriceSource(*config, {}));
+  const PublishedHistory history = find_history(*config);
   EXPECT_EQ(history.status, Status::kOk);
   server.stop();
   serving.join();

@@ -31,9 +31,9 @@ class PriceSourceTest : public ::testing::Test {
     }
     return text + "]}";
   }
-  PriceSource::Answer ask() {
+  PriceReply ask() {
     UnitWatch watch;
-    return PriceSource(*config_, {}).ask(watch);
+    return ask_price(*config_, watch);
   }
 
   std::string body_ = "[]";
@@ -48,7 +48,7 @@ TEST_F(PriceSourceTest, OneBadRowAmongGoodOnesIsSkipped) {
   for (const char* bad :
        {"null", "NaN", "-Infinity", "\"42\"", "\"n/a\"", "{}", "[]", "true", "1e9", "\"NaN\""}) {
     body_ = rows({bad, "42.5", "43"});
-    const PriceSource::Answer answer = ask();
+    const PriceReply answer = ask();
     EXPECT_EQ(answer.status, Status::kOk) << bad;
     EXPECT_EQ(answer.newest.price_centi_eur_per_mwh, 4'250) << bad;
     EXPECT_EQ(answer.passed_over, 1) << bad;
@@ -79,17 +79,17 @@ TEST_F(PriceSourceTest, AnotherUnitShowsWithTheFirstAnswer) {
   for (int i = 0; i < 100; ++i) prices.push_back(formatted("%.5f", 0.085 + 0.0007 * (i % 23)));
   body_ = rows(prices);
   UnitWatch watch;
-  EXPECT_EQ(PriceSource(*config_, {}).ask_first(watch).status, Status::kOk);
+  EXPECT_EQ(ask_first_price(*config_, watch).status, Status::kOk);
   EXPECT_TRUE(watch.is_doubtful());
   config_->price.feed.fields.eur_per_mwh_e1 = 10'000;
   UnitWatch right;
-  EXPECT_EQ(PriceSource(*config_, {}).ask_first(right).status, Status::kOk);
+  EXPECT_EQ(ask_first_price(*config_, right).status, Status::kOk);
   EXPECT_FALSE(right.is_doubtful());
 }
 
 TEST_F(PriceSourceTest, ARefusalSaysForHowLong) {
   first_lines_ = "HTTP/1.1 429 Too Many Requests\r\nRetry-After: 50\r\n";
-  const PriceSource::Answer answer = ask();
+  const PriceReply answer = ask();
   EXPECT_EQ(answer.status, Status::kServerBusy);
   EXPECT_EQ(answer.wait_s, 50);
 }
@@ -119,12 +119,12 @@ TEST_F(PriceSourceTest, HistoryGivesALevel) {
   std::vector<std::string> prices(100, "80");
   body_ = rows(prices);
   config_->price.history.hours = 1;
-  const PublishedHistory history = find_history(*config_, PriceSource(*config_, {}));
+  const PublishedHistory history = find_history(*config_);
   EXPECT_TRUE(history.is_done);
   EXPECT_GE(history.rows, 55);
   EXPECT_EQ(history.level.centi_eur_per_mwh(), 8'000);
   config_->price.history.hours = 0;
-  EXPECT_FALSE(find_history(*config_, PriceSource(*config_, {})).level.is_known());
+  EXPECT_FALSE(find_history(*config_).level.is_known());
 }
 
 }  // namespace
