@@ -1,11 +1,25 @@
 #include "edge/device/battery/measurement_reader.h"
 
 #include <algorithm>
+#include <string_view>
 #include <tuple>
 
 namespace bess {
 
 namespace {
+
+/// Point with a role in the controller.
+struct PointRole {
+  std::string_view name;
+  std::int32_t BatteryMeasurement::*member;
+};
+
+constexpr PointRole kRoles[] = {{"soc", &BatteryMeasurement::soc_e4},
+                                {"capacity", &BatteryMeasurement::capacity_wh},
+                                {"charge_power_max", &BatteryMeasurement::charge_w_max},
+                                {"discharge_power_max", &BatteryMeasurement::discharge_w_max},
+                                {"temperature_min", &BatteryMeasurement::temperature_min_deci_c},
+                                {"temperature_max", &BatteryMeasurement::temperature_max_deci_c}};
 
 /// True if the span includes a register that the device lacks.
 bool is_refused(const RegisterSpan& span, int end, const PlacedPoints& missing) {
@@ -54,16 +68,6 @@ int offset_in(const RegisterSpan& span, const PlacedPoint& point) {
 std::int32_t clamp_to_int32(std::int64_t value) {
   return static_cast<std::int32_t>(std::clamp<std::int64_t>(value, INT32_MIN, INT32_MAX));
 }
-
-MeasurementReader::MeasurementReader(const RegisterMap& map)
-    : map_(map),
-      soc_(find_point(map, "soc")),
-      capacity_(find_point(map, "capacity")),
-      charge_limit_(find_point(map, "charge_power_max")),
-      discharge_limit_(find_point(map, "discharge_power_max")),
-      temperature_min_(find_point(map, "temperature_min")),
-      temperature_max_(find_point(map, "temperature_max")),
-      alive_(map) {}
 
 bool MeasurementReader::lacks_required_values(const PointValues& live) const {
   return std::ranges::any_of(map_.required, [&](std::int8_t point) { return live.failed[point]; });
@@ -128,12 +132,9 @@ void MeasurementReader::store(const PointValues& live, int point, std::int64_t w
   const bool is_beyond = live_scaling(map_, live, point, scaling) &&
                          is_cut(map_.points[point], live.raw[point], scaling);
   if (is_beyond) m.cut_point = static_cast<std::int16_t>(point + 1);
-  if (point == soc_) m.soc_e4 = value;
-  if (point == capacity_) m.capacity_wh = value;
-  if (point == charge_limit_) m.charge_w_max = value;
-  if (point == discharge_limit_) m.discharge_w_max = value;
-  if (point == temperature_min_) m.temperature_min_deci_c = value;
-  if (point == temperature_max_) m.temperature_max_deci_c = value;
+  for (const PointRole& role : kRoles) {
+    if (map_.points[point].name == role.name) m.*role.member = value;
+  }
 }
 
 bool MeasurementReader::is_true(const PointValues& live, const Condition& condition) const {

@@ -64,7 +64,7 @@ std::int32_t clamp_to_int32(std::int64_t value);
 class MeasurementReader {
  public:
   /// `map` must outlive this object.
-  explicit MeasurementReader(const RegisterMap& map);
+  explicit MeasurementReader(const RegisterMap& map) : map_(map), alive_(map) {}
 
   /// SoC, power or another required value was not received.
   [[nodiscard]] bool lacks_required_values(const PointValues& live) const;
@@ -84,8 +84,6 @@ class MeasurementReader {
   [[nodiscard]] bool is_true(const PointValues& live, const Condition& condition) const;
 
   const RegisterMap& map_;
-  // Points with a role in the controller, by name; -1 = not in this map.
-  int soc_, capacity_, charge_limit_, discharge_limit_, temperature_min_, temperature_max_;
   HeartbeatCheck alive_;
 };
 
