@@ -114,12 +114,6 @@ CLI::Validator number_rule(std::function<bool(double)> holds, const std::string&
 }
 
 /// Shorter than std::to_string().
-std::string short_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
-
 }  // namespace
 
 ProgramOption& ProgramOption::required() {
@@ -136,7 +130,7 @@ ProgramOption& ProgramOption::checked(const CLI::Validator& rule) {
 }
 ProgramOption& ProgramOption::range(int low, int high) { return checked(CLI::Range(low, high)); }
 ProgramOption& ProgramOption::range(double low, double high) {
-  const std::string rule = short_text(low) + " to " + short_text(high);
+  const std::string rule = formatted("%g to %g", low, high);
   return checked(
       number_rule([=](double x) { return x >= low && x <= high; }, rule, "[" + rule + "]"));
 }

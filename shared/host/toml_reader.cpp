@@ -1,7 +1,6 @@
 #include "shared/host/toml_reader.h"
 
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 
 #include "shared/host/text.h"
@@ -9,11 +8,7 @@
 namespace bess {
 namespace {
 
-std::string number_text(double value) {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.10g", value);
-  return buffer;
-}
+std::string number_text(double value) { return formatted("%.10g", value); }
 
 std::string range_text(double min, double max) {
   return "must lie between " + number_text(min) + " and " + number_text(max);
