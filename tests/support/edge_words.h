@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "edge/app/commands/command_line.h"
+#include "edge/app/commands/command.h"
 
 namespace bess {
 

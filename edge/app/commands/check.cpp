@@ -1,4 +1,4 @@
-#include "edge/app/commands/check.h"
+#include "edge/app/commands/command.h"
 
 #include <cstdio>
 #include <filesystem>

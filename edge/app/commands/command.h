@@ -1,5 +1,5 @@
-// Declaration of the commands of bess-edge. Each NAME_command.cpp declares one command, with its
-// options in one struct.
+// Command line of bess-edge. Each NAME_command.cpp declares one command, with its options in one
+// struct.
 #pragma once
 
 #include <cstdint>
@@ -82,5 +82,27 @@ void add_map_check(EdgeCommand root);
 void add_signature(EdgeCommand root);
 /// bess-edge without a command. Last, because later commands would inherit its footer.
 void add_run(EdgeCommand root);
+
+/// Runs the command; an error is one line on stderr. Returns the exit code of the process.
+int run_command_line(int argc, const char* const* argv);
+
+// Check of settings, battery, meter and prices: `bess-edge --check`; and self-test of machine and
+// site for the controller: `bess-edge --self-test`. Both write nothing to the battery.
+
+/// Result of `bess-prices --check`, for --check and --self-test.
+struct PriceCheck {
+  bool is_well = false;
+  std::string lines;  ///< its output, then its errors
+};
+
+/// Runs bess-prices from the folder of this program.
+PriceCheck check_prices(const std::string& config_path);
+
+/// `path`: settings file. Findings go to stdout, errors to stderr. Exit code 0, or 1 if the
+/// controller would not run.
+int run_check(const EdgeConfig& config, const std::string& path);
+
+/// Prints one line per part: ok, note or FAIL. Exit code 0, or 1 if a part fails.
+int run_self_test(const EdgeConfig& config, const std::string& config_path);
 
 }  // namespace bess

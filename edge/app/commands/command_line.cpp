@@ -1,10 +1,9 @@
-#include "edge/app/commands/command_line.h"
+#include "edge/app/commands/command.h"
 
 #include <unistd.h>
 
 #include <cstdio>
 
-#include "edge/app/commands/command.h"
 #include "edge/core/control/policy.h"
 #include "edge/records/log/journal.h"
 #include "edge/records/why/explanation.h"

@@ -3,13 +3,11 @@
 //   battery ------> ModbusBattery ----------+         |                        |
 //   meter, limits -> SiteLimits ------------+         |                        +-> ModbusBattery
 //                                                     +-> EventLog (own thread), ServiceNotify
-#include "edge/app/commands/check.h"
 #include "edge/app/commands/command.h"
 #include "edge/app/program/controller.h"
 #include "edge/app/program/find_battery.h"
 #include "edge/app/program/real_world.h"
 #include "edge/core/control/policy.h"
-#include "edge/records/log/journal.h"
 
 namespace bess {
 namespace {
@@ -37,11 +35,6 @@ Examples:
   bess-edge --config /etc/bess/edge.toml --check
   bess-edge --config /etc/bess/edge.toml --dry-run --cycles 5)";
 
-int fail(const FileMessage& error) {
-  report(JournalLevel::kError, "%s", error.c_str());
-  return 1;
-}
-
 /// Once per process: the objects are static, and the process stays sealed after the run.
 int run_controller(const RunCommandOptions& options, const EdgeConfig& config) {
   static DeviceSession session;
@@ -51,14 +44,14 @@ int run_controller(const RunCommandOptions& options, const EdgeConfig& config) {
   static PriceReader prices({.path = prices_file(config), .model = student_outlook()},
                             config.clock);
   FileMessage error;
-  if (!lock_state(config, session.locks(), error)) return fail(error);
+  if (!lock_state(config, session.locks(), error)) return failed(error.c_str());
   static RealWorld world(
       config, {.clock = session.clock(), .battery = battery, .meter = meter, .prices = prices});
-  if (!world.record_battery(options.record_path, error)) return fail(error);
+  if (!world.record_battery(options.record_path, error)) return failed(error.c_str());
   static Controller<RealWorld> controller(config, world);
   if (!controller.reach() || !controller.begin()) return 1;
   const bool is_released = controller.run(options.cycles);
-  if (!world.finish_recording(error)) return fail(error);
+  if (!world.finish_recording(error)) return failed(error.c_str());
   return is_released ? 0 : 1;
 }
 

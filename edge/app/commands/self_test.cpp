@@ -1,5 +1,5 @@
 // Self-test of machine and site for the controller: `bess-edge --self-test`.
-#include "edge/app/commands/check.h"
+#include "edge/app/commands/command.h"
 
 #include <expected_signature.h>
 #include <sys/mman.h>
