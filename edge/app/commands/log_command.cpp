@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "edge/app/commands/command.h"
-#include "edge/records/account/day_account.h"
+#include "edge/records/account/day_accounts.h"
 #include "edge/records/log/log_reader.h"
 #include "edge/records/log/log_text.h"
 #include "edge/records/why/explanation.h"

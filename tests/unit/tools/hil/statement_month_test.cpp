@@ -8,7 +8,6 @@
 #include <map>
 #include <string>
 
-#include "edge/records/account/day_account.h"
 #include "edge/records/account/day_accounts.h"
 #include "edge/records/log/ring_log.h"
 #include "shared/host/json.h"

@@ -1,9 +1,7 @@
 // Daily summary line: money computed by hand, and its numbers.
-#include "edge/records/account/day_account.h"
+#include "edge/records/account/day_accounts.h"
 
 #include <gmock/gmock.h>
-
-#include "edge/records/account/day_accounts.h"
 
 #include "shared/local_time.h"
 #include "tests/support/tokens.h"
