@@ -21,7 +21,6 @@
 #include "edge/core/control/control_types.h"
 #include "edge/core/control/power_order.h"
 #include "edge/device/battery/commission_types.h"
-#include "edge/device/battery/meter_proof.h"
 #include "edge/device/battery/step_fit.h"
 #include "shared/scaled_clock.h"
 
