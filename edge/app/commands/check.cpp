@@ -8,7 +8,6 @@
 #include "edge/app/program/find_battery.h"
 #include "edge/app/program/startup.h"
 #include "edge/app/settings/price_config.h"
-#include "edge/app/settings/unused_keys.h"
 #include "edge/app/storage/commission_file.h"
 #include "edge/app/storage/instance_lock.h"
 #include "edge/app/storage/operator_files.h"

@@ -7,7 +7,6 @@
 #include <sstream>
 
 #include "edge/app/commands/command.h"
-#include "edge/app/settings/unused_keys.h"
 #include "edge/app/storage/operator_files.h"
 #include "edge/app/storage/published_status.h"
 #include "edge/app/storage/storage_health.h"

@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "edge/app/settings/control_config.h"
 #include "edge/app/settings/price_config.h"
@@ -54,5 +55,13 @@ struct StateFilePaths {
   FixedText<639> run;  ///< empty = none
 };
 StateFilePaths state_file_paths(const EdgeConfig& config, std::string_view name);
+
+// Keys of a configuration without effect, with the reason.
+
+/// "[price] timeout_ms: retired, ...".
+std::string retired_key_text(const RetiredKey& old);
+
+/// "ramp_w_max: no step is larger than 8000 W".
+std::vector<std::string> keys_without_effect(const EdgeConfig& config);
 
 }  // namespace bess

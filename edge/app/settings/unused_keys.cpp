@@ -1,4 +1,4 @@
-#include "edge/app/settings/unused_keys.h"
+#include "edge/app/settings/edge_config.h"
 
 #include "shared/host/text.h"
 

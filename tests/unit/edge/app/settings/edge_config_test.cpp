@@ -1,8 +1,6 @@
 // Configuration of the operator: the documented example loads, and every mistake is one clear line.
 #include "edge/app/settings/edge_config.h"
 
-#include "edge/app/settings/unused_keys.h"
-
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 

@@ -3,7 +3,6 @@
 
 #include <gmock/gmock.h>
 
-#include "edge/app/settings/unused_keys.h"
 #include "edge/records/why/explanation.h"
 #include "shared/host/text.h"
 #include "shared/local_time.h"
