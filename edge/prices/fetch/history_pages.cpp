@@ -1,4 +1,4 @@
-#include "edge/prices/fetch/history_pages.h"
+#include "edge/prices/fetch/price_fetcher.h"
 
 #include <algorithm>
 #include <memory>

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "edge/core/control/policy.h"
-#include "edge/prices/fetch/history_pages.h"
 #include "edge/records/log/atomic_file.h"
 #include "edge/records/log/journal.h"
 #include "shared/scaled_clock.h"

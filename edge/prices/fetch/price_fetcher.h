@@ -8,12 +8,14 @@
 #include <mutex>
 #include <stop_token>
 #include <string>
+#include <string_view>
 
 #include "edge/app/settings/edge_config.h"
 #include "edge/prices/fetch/fetch.h"
 #include "edge/prices/fetch/price_json.h"
 #include "edge/prices/fetch/unit_watch.h"
 #include "edge/prices/record/published_prices.h"
+#include "shared/scaled_clock.h"
 
 namespace bess {
 
@@ -60,6 +62,21 @@ PriceReply ask_first_price(const EdgeConfig& config, UnitWatch& watch,
                            const std::stop_token& stop = {});
 /// Price level of the hours before now; for a first start.
 PublishedHistory find_history(const EdgeConfig& config, const std::stop_token& stop = {});
+
+// History pages: rows of the last days from the price server, before the loop starts, for the price
+// level of a first start. Pages as in Opendatasoft v2.1 (limit, offset), newest rows first, so that
+// rows received before a failure or the deadline have the largest weight.
+
+/// `url` with a limit of 100 rows and an offset, replacing its own.
+std::string page_url(std::string_view url, int offset);
+
+using PageFetch = std::function<PriceAnswer(const char* url, std::int32_t timeout_ms)>;
+
+/// Price level of the hours before now, within kHistoryWait_s. Status other than kOk: ended early;
+/// rows received so far count. Runs on the caller's thread.
+PublishedHistory fetch_history(const PriceConfig& price, const ScaledClock& clock,
+                               const PageFetch& fetch_page,
+                               const std::function<bool()>& stop_requested);
 
 class PriceFetcher {
  public:

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "edge/core/control/policy.h"
-#include "edge/prices/fetch/history_pages.h"
+#include "edge/prices/fetch/price_fetcher.h"
 #include "edge/records/log/record_codec.h"
 #include "shared/host/user_error.h"
 #include "shared/scaled_clock.h"
