@@ -7,7 +7,6 @@
 
 #include "edge/app/program/find_battery.h"
 #include "edge/app/program/startup.h"
-#include "edge/app/settings/price_config.h"
 #include "edge/app/storage/commission_file.h"
 #include "edge/app/storage/instance_lock.h"
 #include "edge/app/storage/operator_files.h"

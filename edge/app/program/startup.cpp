@@ -3,7 +3,6 @@
 #include <signal.h>
 #include <sys/prctl.h>
 
-#include "edge/app/settings/price_config.h"
 #include "edge/core/control/decision_signature.h"
 #include "edge/core/control/policy.h"
 #include "edge/prices/record/price_settings.h"

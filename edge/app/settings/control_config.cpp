@@ -1,4 +1,4 @@
-#include "edge/app/settings/control_config.h"
+#include "edge/app/settings/edge_config.h"
 
 #include <arpa/inet.h>
 #include <unistd.h>
@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <string>
 
-#include "edge/app/settings/price_config.h"
 #include "edge/core/control/full_charge.h"
 #include "edge/device/registers/map_file.h"
 #include "edge/records/log/battery_name.h"

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <string>
 
-#include "edge/app/settings/control_config.h"
 #include "edge/prices/record/published_prices.h"
 #include "edge/records/log/battery_name.h"
 #include "shared/crc32.h"

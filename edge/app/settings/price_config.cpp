@@ -1,4 +1,4 @@
-#include "edge/app/settings/price_config.h"
+#include "edge/app/settings/edge_config.h"
 
 #include <unistd.h>
 

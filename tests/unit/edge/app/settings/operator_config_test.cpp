@@ -1,5 +1,4 @@
 // Reserve and full charge in the operator's configuration, and every mistake in them.
-#include "edge/app/settings/control_config.h"
 #include "edge/app/settings/edge_config.h"
 
 #include <gmock/gmock.h>

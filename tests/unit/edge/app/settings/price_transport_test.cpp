@@ -1,6 +1,5 @@
 // Requests allowed over plain http, and the report at the start.
 #include "edge/app/settings/edge_config.h"
-#include "edge/app/settings/price_config.h"
 
 #include <gmock/gmock.h>
 #include <sys/stat.h>

@@ -1,9 +1,8 @@
 // [meter] and [limits]: their meaning, and that every mistake is one line with its correction.
-#include "edge/app/settings/control_config.h"
+#include "edge/app/settings/edge_config.h"
 
 #include <gmock/gmock.h>
 
-#include "edge/app/settings/edge_config.h"
 #include "edge/records/why/explanation.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
