@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "edge/device/battery/battery_driver.h"
-#include "edge/device/battery/identity_check.h"
 #include "edge/device/battery/measurement_reader.h"
 #include "edge/device/battery/modbus_link.h"
 #include "edge/device/registers/point_values.h"
