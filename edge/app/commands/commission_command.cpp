@@ -70,7 +70,7 @@ bool may_drive_further(const SiteConfig& site, std::int64_t utc_s) {
   if (!site.settings.has_outside_limits) return true;
   OutsideLimit limit;
   bool is_set = false;
-  const Status status = LimitFile(site.limit_file.c_str()).read(limit, is_set);
+  const Status status = LimitFile{site.limit_file.c_str()}.read(limit, is_set);
   return status == Status::kOk && !(is_set && utc_s < limit.until_utc_s);
 }
 

@@ -130,7 +130,7 @@ void print_limit(const EdgeConfig& config) {
   if (!config.site.settings.has_outside_limits) return;
   OutsideLimit limit;
   bool is_set = false;
-  const Status status = LimitFile(config.site.limit_file.c_str()).read(limit, is_set);
+  const Status status = LimitFile{config.site.limit_file.c_str()}.read(limit, is_set);
   const std::int64_t now_utc_s = utc_seconds(config.clock);
   if (status != Status::kOk || !is_set || limit.until_utc_s <= now_utc_s) return;
   const auto power = [](std::int32_t power_w) {

@@ -34,7 +34,7 @@ void write_farewell(const CycleRecord& last, bool is_in_control, bool ends_by_it
 }  // namespace
 
 RealWorld::RealWorld(const EdgeConfig& config, const Devices& devices)
-    : config_(config), devices_(devices), limits_(config.site.limit_file.c_str()) {}
+    : config_(config), devices_(devices), limits_{config.site.limit_file.c_str()} {}
 
 bool RealWorld::record_battery(const std::string& path, FileMessage& error) {
   if (path.empty()) return true;

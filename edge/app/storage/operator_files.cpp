@@ -90,7 +90,7 @@ HoldReading read_newest_hold(const StateFilePaths& paths) {
 Status LimitFile::read(OutsideLimit& limit, bool& is_set) const {
   is_set = false;
   char text[kLimitBytesMax + 1];
-  const ssize_t size = read_beginning(path_, text, SymlinkPolicy::kFollowed);
+  const ssize_t size = read_beginning(path, text, SymlinkPolicy::kFollowed);
   if (size < 0 && errno == ENOENT) return Status::kOk;
   if (size < 0 || size > static_cast<ssize_t>(kLimitBytesMax)) return Status::kMalformed;
   const Status status = parse_outside_limit({text, static_cast<std::size_t>(size)}, limit);

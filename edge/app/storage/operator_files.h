@@ -44,16 +44,11 @@ HoldReading read_newest_hold(const StateFilePaths& paths);
 // seconds: no heap, fixed buffer, and no blocking, so a regular file in memory (/run), never a
 // pipe. Writers replace it atomically.
 
-class LimitFile {
- public:
-  /// `path` must outlive this object.
-  explicit LimitFile(const char* path) : path_(path) {}
+struct LimitFile {
+  const char* path;  ///< must outlive this object
 
   /// `is_set` is false without a file. kMalformed: unreadable or malformed.
   Status read(OutsideLimit& limit, bool& is_set) const;
-
- private:
-  const char* path_;
 };
 
 }  // namespace bess

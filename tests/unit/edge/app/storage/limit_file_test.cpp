@@ -19,7 +19,7 @@ struct ReadLimits {
   Status status;
 
   explicit ReadLimits(const std::string& path)
-      : status(LimitFile(path.c_str()).read(limit, is_set)) {}
+      : status(LimitFile{path.c_str()}.read(limit, is_set)) {}
 };
 
 TEST(LimitFile, AGoodLineIsALimitAndNoFileIsNone) {
