@@ -234,7 +234,7 @@ int run_check(const EdgeConfig& config, const std::string& path) {
   if (!session.begin(config)) return 1;
   ModbusBattery battery(config.battery.link, config.battery.map, config.clock);
   ModbusMeter meter(config.site.link, config.site.map, config.clock);
-  const bool is_well = report_check(config, battery, path, session.clock());
+  const bool is_well = report_check(config, battery, path, *session.clock);
   const bool is_accepted = report_site(config, battery, meter) && is_well;
   std::printf("result     %s\n", is_accepted
                                      ? "accepted: no error found"

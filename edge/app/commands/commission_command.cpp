@@ -226,7 +226,7 @@ int run_commission(const CommissionOptions& options, SettingsFile& settings) {
   const EdgeConfig& config = settings.config;
   DeviceSession session;
   if (!session.begin(config)) return 1;
-  EdgeClock& clock = session.clock();
+  EdgeClock& clock = *session.clock;
   CommissionSettings test = settings_of(config);
   test.drives_further = may_drive_further(config.site, utc_seconds(clock));
   if (!options.yes) return ask_for_yes(config, test);

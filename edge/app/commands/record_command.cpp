@@ -118,7 +118,7 @@ int run_record(const RecordOptions& options, SettingsFile& settings) {
   const EdgeConfig& config = settings.config;
   DeviceSession session;
   if (!session.begin(config)) return 1;
-  EdgeClock& clock = session.clock();
+  EdgeClock& clock = *session.clock;
   const RecordingHead head =
       recording_head_of(config.battery.map, config.battery.link, config.clock);
   const std::string path = path_of(options, head.begin_utc_s);

@@ -36,7 +36,7 @@ int run_release(const ReleaseOptions& options, SettingsFile& settings) {
     return 2;
   }
   if (options.force) battery.permit_release();
-  if (!reach_battery(config, battery, session.clock()) && !options.force) {
+  if (!reach_battery(config, battery, *session.clock) && !options.force) {
     return failed("not released; --force releases it anyway");
   }
   const Status status = battery.release();

@@ -44,9 +44,9 @@ int run_controller(const RunCommandOptions& options, const EdgeConfig& config) {
   static PriceReader prices({.path = prices_file(config), .model = student_outlook()},
                             config.clock);
   FileMessage error;
-  if (!lock_state(config, session.locks(), error)) return failed(error.c_str());
+  if (!lock_state(config, session.locks, error)) return failed(error.c_str());
   static RealWorld world(
-      config, {.clock = session.clock(), .battery = battery, .meter = meter, .prices = prices});
+      config, {.clock = *session.clock, .battery = battery, .meter = meter, .prices = prices});
   if (!world.record_battery(options.record_path, error)) return failed(error.c_str());
   static Controller<RealWorld> controller(config, world);
   if (!controller.reach() || !controller.begin()) return 1;

@@ -38,12 +38,12 @@ void release_if_a_check_fails(ModbusBattery& battery) {
 bool DeviceSession::begin(const EdgeConfig& config) {
   if (!check_student() || !prepare_memory()) return false;
   FileMessage error;
-  if (!lock_battery(config, locks_, error)) {
+  if (!lock_battery(config, locks, error)) {
     report(JournalLevel::kError, "%s", error.c_str());
     return false;
   }
   prepare_process();
-  clock_.emplace(config.clock);
+  clock.emplace(config.clock);
   return true;
 }
 

@@ -16,19 +16,13 @@ namespace bess {
 void release_if_a_check_fails(ModbusBattery& battery);
 
 /// Preparation of every command that uses the battery: memory, student check, battery lock, clock.
-class DeviceSession {
- public:
+struct DeviceSession {
   /// Call before any thread starts. False with one line on stderr when the battery is in use, or
   /// this machine is not suitable.
   bool begin(const EdgeConfig& config);
 
-  /// After `begin`.
-  EdgeClock& clock() { return *clock_; }
-  RunLocks& locks() { return locks_; }
-
- private:
-  RunLocks locks_;
-  std::optional<EdgeClock> clock_;
+  RunLocks locks;
+  std::optional<EdgeClock> clock;  ///< set by `begin`
 };
 
 struct BatterySearch {
