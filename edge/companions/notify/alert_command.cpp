@@ -1,4 +1,4 @@
-#include "edge/companions/notify/alert_command.h"
+#include "edge/companions/notify/notifier_state.h"
 
 #include <vector>
 

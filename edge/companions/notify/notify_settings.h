@@ -27,7 +27,7 @@ struct NotifySettings : ControllerPlaces {
   std::int32_t every_s = 30;
   std::int32_t after_s = 300;
   bool daily = true;
-  std::string command;  ///< alert_command.h; empty: none
+  std::string command;  ///< notifier_state.h; empty: none
   std::int32_t command_ms_max = 60'000;
   MqttSettings mqtt;
   std::string settled_file;  ///< written by bess-prices; empty: not configured

@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "edge/companions/notify/alert_command.h"
 #include "edge/companions/notify/controller_status.h"
 #include "edge/companions/notify/notifier_state.h"
 #include "edge/companions/notify/notify_settings.h"

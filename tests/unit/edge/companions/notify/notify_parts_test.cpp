@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "edge/companions/notify/alert_command.h"
 #include "edge/companions/notify/controller_status.h"
 #include "edge/companions/notify/notifier_state.h"
 #include "edge/companions/notify/notify_settings.h"
