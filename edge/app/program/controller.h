@@ -4,9 +4,22 @@
 //   begin   first price, restored state, price level, operator files
 //   run     control cycles, each logged and published; then hand over, or 0 W and release
 // After `begin` nothing here allocates.
+//
+//   World        types Prices, Limits and Seal: control_loop.h, site_limits.h. While a Seal exists,
+//                nothing may allocate
+//     devices    EdgeClock& clock(), ModbusBattery& battery(), Prices& prices(), ModbusMeter& meter(),
+//                Limits& limits()
+//     prices     Status check_price_server(), the first answer; PublishedHistory find_history(), the
+//                price level of the last hours; OutlookExchange* await_outlook(level_centi), plans
+//                for a student by outlook, from this level; null for other contexts
+//     state      bool open(); RestoredState restore_state(); both report their own errors. bool
+//                read_back(number, CycleRecord&) const, 0: the newest; keep(record)
+//     operator   const LatestHold& listen(); bool is_cleared(trip_utc_s)
+//     observers  needs_time(seconds), complain(level, line), write_line(level, line), begins(),
+//                is_ready(), cycle_done(record), stops(),
+//                has_stopped(record, is_in_control, ends_by_itself)
 #pragma once
 
-#include <concepts>
 #include <cstdint>
 #include <string>
 
@@ -21,45 +34,7 @@
 
 namespace bess {
 
-/// World of a controller. Requirements on its types: control_loop.h, site_limits.h. While `Seal`
-/// exists, nothing may allocate.
 template <typename World>
-concept ControllerWorld = requires(World& world, const World& known, CycleRecord& record,
-                                   const CycleRecord& done, std::int64_t number, std::int32_t level,
-                                   const std::string& line) {
-  typename World::Prices;
-  typename World::Limits;
-  typename World::Seal;
-  { world.clock() } -> std::same_as<EdgeClock&>;
-  { world.battery() } -> std::same_as<ModbusBattery&>;
-  { world.prices() } -> std::same_as<typename World::Prices&>;
-  { world.meter() } -> std::same_as<ModbusMeter&>;
-  { world.limits() } -> std::same_as<typename World::Limits&>;
-  // First price answer, and price level of the last hours.
-  { world.check_price_server() } -> std::same_as<Status>;
-  { world.find_history() } -> std::same_as<PublishedHistory>;
-  // Persistent state. `open` and `restore_state` report their own errors.
-  { world.open() } -> std::same_as<bool>;
-  { world.restore_state() } -> std::same_as<RestoredState>;
-  { known.read_back(number, record) } -> std::same_as<bool>;  // 0: the newest
-  world.keep(done);
-  // Operator: holds, and whether the trip of a time was cleared.
-  { world.listen() } -> std::same_as<const LatestHold&>;
-  // Plans for a student by outlook, from this level; null for other contexts.
-  { world.await_outlook(level) } -> std::same_as<OutlookExchange*>;
-  { world.is_cleared(number) } -> std::same_as<bool>;
-  // Observers.
-  world.needs_time(number);
-  world.complain(JournalLevel::kError, line);
-  world.write_line(JournalLevel::kInfo, line);
-  world.begins();
-  world.is_ready();
-  world.cycle_done(done);
-  world.stops();
-  world.has_stopped(done, true, true);
-};
-
-template <ControllerWorld World>
 class Controller {
  public:
   using Site = SiteLimits<ModbusMeter, typename World::Limits>;
