@@ -7,11 +7,11 @@
 //
 //   World        types Prices, Limits and Seal: control_loop.h, site_limits.h. While a Seal exists,
 //                nothing may allocate
-//     devices    EdgeClock& clock(), ModbusBattery& battery(), Prices& prices(), ModbusMeter& meter(),
-//                Limits& limits()
-//     prices     Status check_price_server(), the first answer; PublishedHistory find_history(), the
-//                price level of the last hours; OutlookExchange* await_outlook(level_centi), plans
-//                for a student by outlook, from this level; null for other contexts
+//     devices    EdgeClock& clock(), ModbusBattery& battery(), Prices& prices(),
+//                ModbusMeter& meter(), Limits& limits()
+//     prices     Status check_price_server(), the first answer; PublishedHistory find_history(),
+//                the price level of the last hours; OutlookExchange* await_outlook(level_centi),
+//                plans for a student by outlook, from this level; null for other contexts
 //     state      bool open(); RestoredState restore_state(); both report their own errors. bool
 //                read_back(number, CycleRecord&) const, 0: the newest; keep(record)
 //     operator   const LatestHold& listen(); bool is_cleared(trip_utc_s)

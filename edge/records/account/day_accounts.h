@@ -1,8 +1,8 @@
-// Accounts of local days, from the decision log: money, energy, full cycles, interventions. Money is
-// before fees, taxes and wear, which `bess-train log` subtracts. Earnings as text, CSV and JSON. Each
-// quarter-hour counts at its settled price, or, as an estimate, at its last indicative price. The
-// change in stored energy is valued at the mean price, because a day that ends empty has sold energy
-// that another day bought.
+// Accounts of local days, from the decision log: money, energy, full cycles, interventions. Money
+// is before fees, taxes and wear, which `bess-train log` subtracts. Earnings as text, CSV and JSON:
+// each quarter-hour counts at its settled price, or, as an estimate, at its last indicative price.
+// The change in stored energy is valued at the mean price, because a day that ends empty has sold
+// energy that another day bought.
 #pragma once
 
 #include <array>
