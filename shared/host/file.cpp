@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cctype>
 #include <cerrno>
 #include <climits>
 #include <cstring>
@@ -339,10 +338,7 @@ class GzipFile {
 };
 
 bool starts_with_any_case(std::string_view text, std::string_view lower) {
-  return text.size() >= lower.size() &&
-         std::equal(lower.begin(), lower.end(), text.begin(), [](char wanted, char found) {
-           return wanted == std::tolower(static_cast<unsigned char>(found));
-         });
+  return equals_ignoring_case(text.substr(0, lower.size()), lower);
 }
 
 bool is_web_page(std::string_view text) {

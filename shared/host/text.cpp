@@ -49,6 +49,11 @@ std::string did_you_mean(std::string_view given, const std::vector<std::string>&
   return word.empty() ? word : "; did you mean " + word + "?";
 }
 
+bool equals_ignoring_case(std::string_view a, std::string_view b) {
+  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
+  return std::ranges::equal(a, b, {}, lower, lower);
+}
+
 std::string html_escaped(std::string_view text) {
   struct Entity {
     char character;

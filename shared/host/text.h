@@ -73,6 +73,9 @@ bool holds_control(std::string_view text);
 /// merges spaces.
 std::string one_line(std::string_view text, std::size_t size_max = std::string_view::npos);
 
+/// True for the same text in other ASCII letters.
+bool equals_ignoring_case(std::string_view a, std::string_view b);
+
 /// printf to a string.
 [[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
 [[gnu::format(printf, 2, 3)]] void add_formatted(std::string& text, const char* format, ...);

@@ -3,11 +3,10 @@
 #include <httplib.h>
 #include <sys/socket.h>
 
-#include <algorithm>
-
 #include "edge/companions/common/numeric_address.h"
 #include "edge/companions/page/controller_answers.h"
 #include "shared/host/json.h"
+#include "shared/host/text.h"
 #include "shared/scaled_clock.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
@@ -23,11 +22,6 @@ std::string_view without_port(std::string_view host) {
     return end == host.npos ? std::string_view() : host.substr(1, end - 1);
   }
   return host.substr(0, host.rfind(':'));
-}
-
-bool equals_ignoring_case(std::string_view a, std::string_view b) {
-  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
-  return std::ranges::equal(a, b, {}, lower, lower);
 }
 
 }  // namespace

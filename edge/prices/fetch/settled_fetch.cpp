@@ -29,14 +29,6 @@ void say(JournalLevel level, const std::string& text) {
   write_journal_line(level, "bess-prices: settled prices: " + text);
 }
 
-/// True for "Validated" in any case, not for "Not Validated", "NV", "DataIssue" and others.
-bool is_validated(std::string_view quality) {
-  constexpr std::string_view kValidated = "validated";
-  return std::ranges::equal(quality, kValidated, [](char a, char b) {
-    return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b;
-  });
-}
-
 /// The prices are public, but plain http would allow forgery.
 bool is_safe_url(const std::string& url) {
   const UrlTransport transport = transport_of(url);
@@ -73,8 +65,9 @@ bool parse_row(JsonValue row, SettledQuarter& quarter) {
   const auto found = price ? price : row["positiveimbalanceprice"].number();
   if (!found || !(std::fabs(*found) <= kPlausiblePriceMaxEurPerMwh)) return false;
   quarter.eur_per_mwh = *found;
-  quarter.state = is_validated(row["qualitystatus"].text_or("")) ? PriceState::kValidated
-                                                                 : PriceState::kPublished;
+  // Not for "Not Validated", "NV", "DataIssue" and others.
+  const bool is_validated = equals_ignoring_case(row["qualitystatus"].text_or(""), "validated");
+  quarter.state = is_validated ? PriceState::kValidated : PriceState::kPublished;
   return true;
 }
 
