@@ -73,7 +73,7 @@ bool holds_control(std::string_view text);
 /// merges spaces.
 std::string one_line(std::string_view text, std::size_t size_max = std::string_view::npos);
 
-/// True for the same text in other ASCII letters.
+/// True for texts that differ at most in the case of ASCII letters.
 bool equals_ignoring_case(std::string_view a, std::string_view b);
 
 /// printf to a string.
