@@ -56,57 +56,48 @@ bool parse_argument(std::string_view text, WriteValue& value) {
   return false;
 }
 
-bool parse_assignment(TomlTable& table, const TomlValue& at, std::string_view text,
+void parse_assignment(TomlTable& table, const TomlValue& at, std::string_view text,
                       const RegisterMap& map, WriteValue& value) {
   const MapPhrase phrase = split_phrase(text);
-  if (phrase.op != "=") {
-    table.fail_at(at, "a step must be \"point = value\"");
-    return false;
-  }
+  if (phrase.op != "=") return table.fail_at(at, "a step must be \"point = value\"");
   value.point = require_point(table, at, phrase.left, map);
-  if (value.point < 0) return false;
+  if (value.point < 0) return;
   std::string_view written = phrase.right;
   constexpr std::string_view kPlus = " + ";
   if (const std::size_t plus = written.find(kPlus); plus != std::string_view::npos) {
     value.plus = require_point(table, at, written.substr(plus + kPlus.size()), map);
-    if (value.plus < 0) return false;
+    if (value.plus < 0) return;
     written = written.substr(0, plus);
   }
-  if (parse_value(map, value.point, written, value.constant)) return true;
+  if (parse_value(map, value.point, written, value.constant)) return;
   value.constant = 0;
   if (!parse_argument(written, value)) {
-    table.fail_at(at, quoted(written) + " is neither a number, nor a name of " +
-                          quoted(phrase.left) + ", nor one of: " + argument_names());
-    return false;
+    return table.fail_at(at, quoted(written) + " is neither a number, nor a name of " +
+                                 quoted(phrase.left) + ", nor one of: " + argument_names());
   }
-  const RegisterPoint& point = map.points[value.point];
-  if (value.argument != Argument::kRating || point.percent_of >= 0) return true;
-  table.fail_at(at, "\"rating\" needs a point with percent_of");
-  return false;
+  if (value.argument == Argument::kRating && map.points[value.point].percent_of < 0) {
+    table.fail_at(at, "\"rating\" needs a point with percent_of");
+  }
 }
 
 /// Points of one request must be adjacent, in the order given.
-bool append_value(TomlTable& table, const TomlValue& at, const RegisterMap& map,
+void append_value(TomlTable& table, const TomlValue& at, const RegisterMap& map,
                   const WriteValue& value, BlockWrite& write) {
   const RegisterPoint& point = map.points[value.point];
   if (!write.values.empty()) {
     const RegisterPoint& before = map.points[write.values[write.values.size() - 1].point];
     if (point.address != before.address + before.registers || point.model != before.model ||
         point.unit_group != before.unit_group) {
-      table.fail_at(at, quoted(point.name.view()) +
-                            " does not follow the previous point: a block write needs "
-                            "neighbouring registers");
-      return false;
+      return table.fail_at(at, quoted(point.name.view()) +
+                                   " does not follow the previous point: a block write needs "
+                                   "neighbouring registers");
     }
   }
   if (point.mask != 0 || point.type == RegisterType::kText) {
-    table.fail_at(
+    return table.fail_at(
         at, quoted(point.name.view()) + " cannot be written: text and bit fields are read-only");
-    return false;
   }
-  if (write.values.try_push_back(value)) return true;
-  table.fail_at(at, "too many points for one write");
-  return false;
+  if (!write.values.try_push_back(value)) table.fail_at(at, "too many points for one write");
 }
 
 void finish_write(TomlTable& table, const TomlValue& at, const RegisterMap& map,
@@ -127,11 +118,9 @@ void read_values(TomlTable& table, const TomlValue& node, const RegisterMap& map
   const auto read_one = [&](const TomlValue& item) {
     const auto* text = item.as<std::string>();
     WriteValue value;
-    if (text == nullptr) {
-      table.fail_at(item, "a step must be \"point = value\"");
-    } else if (parse_assignment(table, item, *text, map, value)) {
-      append_value(table, item, map, value, write);
-    }
+    if (text == nullptr) return table.fail_at(item, "a step must be \"point = value\"");
+    parse_assignment(table, item, *text, map, value);
+    if (table.ok()) append_value(table, item, map, value, write);
   };
   if (const auto* list = node.as<TomlArray>()) {
     for (const TomlValue& item : *list) read_one(item);

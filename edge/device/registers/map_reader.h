@@ -100,7 +100,7 @@ void read_power_cases(TomlTable& table, std::string_view key, const RegisterMap&
 /// A number, or one of the point's names for values or bits.
 bool parse_value(const RegisterMap& map, int point, std::string_view text, std::int64_t& value);
 /// "point = value", "point != value", "point has bit", or "point" alone for "point != 0".
-bool parse_condition(TomlTable& table, const TomlValue& at, std::string_view text,
+void parse_condition(TomlTable& table, const TomlValue& at, std::string_view text,
                      const RegisterMap& map, Condition& condition);
 
 template <int kCapacity>
@@ -108,7 +108,7 @@ void read_conditions(TomlTable& table, std::string_view key, const RegisterMap& 
                      StaticVector<Condition, kCapacity>& out) {
   for_each_text(table, key, [&](std::string_view text, const TomlValue& at) {
     Condition condition;
-    if (!parse_condition(table, at, text, map, condition)) return;
+    parse_condition(table, at, text, map, condition);
     if (!out.try_push_back(condition)) table.fail(key, "holds too many conditions");
   });
 }

@@ -23,7 +23,7 @@ void read_measured(TomlTable& table, RegisterMap& map) {
 }
 
 /// "point" or "-point".
-bool read_term(TomlTable& table, const TomlValue& at, std::string_view text, const RegisterMap& map,
+void read_term(TomlTable& table, const TomlValue& at, std::string_view text, const RegisterMap& map,
                PowerCase& out) {
   PowerCase::Term term;
   if (text.starts_with('-')) {
@@ -31,10 +31,9 @@ bool read_term(TomlTable& table, const TomlValue& at, std::string_view text, con
     text.remove_prefix(1);
   }
   term.point = require_point(table, at, text, map);
-  if (term.point < 0) return false;
-  if (out.terms.try_push_back(term)) return true;
-  table.fail_at(at, "a power is the sum of at most 6 points");
-  return false;
+  if (term.point >= 0 && !out.terms.try_push_back(term)) {
+    table.fail_at(at, "a power is the sum of at most 6 points");
+  }
 }
 
 void read_power_case(TomlTable& table, const RegisterMap& map, StaticVector<PowerCase, 4>& cases) {
@@ -96,8 +95,8 @@ void read_power_cases(TomlTable& table, std::string_view key, const RegisterMap&
   if (node == nullptr) return;
   if (const auto* text = node->as<std::string>()) {
     PowerCase always;
-    if (read_term(table, *node, *text, map, always)) cases.push_back(always);
-    return;
+    read_term(table, *node, *text, map, always);
+    return cases.push_back(always);
   }
   for_each_table(table, key, [&](TomlTable& item) { read_power_case(item, map, cases); });
 }

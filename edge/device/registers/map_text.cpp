@@ -65,42 +65,39 @@ std::uint64_t readable_bits(const RegisterPoint& point) {
 }
 
 /// Rejects a condition that no reading can fulfil: a fault would never show.
-bool can_hold(TomlTable& table, const TomlValue& at, const RegisterMap& map,
-              const Condition& condition, std::string_view text) {
+void check_can_hold(TomlTable& table, const TomlValue& at, const RegisterMap& map,
+                    const Condition& condition, std::string_view text) {
   const RegisterPoint& point = map.points[condition.point];
   const std::string name = quoted(point.name.view());
   const std::string range =
       std::to_string(point.value_min) + " to " + std::to_string(point.value_max);
   if (condition.test == Condition::Test::kHasBits) {
     const auto bits = static_cast<std::uint64_t>(condition.value);
-    if (bits != 0 && (bits & ~readable_bits(point)) == 0) return true;
-    table.fail_at(at, quoted(text) + " can never hold: " + name + ", " + range +
-                          (bits == 0 ? ", no bit is given" : ", has no such bit"));
-    return false;
+    if (bits != 0 && (bits & ~readable_bits(point)) == 0) return;
+    return table.fail_at(at, quoted(text) + " can never hold: " + name + ", " + range +
+                                 (bits == 0 ? ", no bit is given" : ", has no such bit"));
   }
   const bool is_read = condition.value >= point.value_min && condition.value <= point.value_max;
-  if (condition.test != Condition::Test::kEqual || is_read) return true;
+  if (condition.test != Condition::Test::kEqual || is_read) return;
   table.fail_at(at, quoted(text) + " can never hold: " + name + " is " + range);
-  return false;
 }
 
 }  // namespace
 
-bool parse_condition(TomlTable& table, const TomlValue& at, std::string_view text,
+void parse_condition(TomlTable& table, const TomlValue& at, std::string_view text,
                      const RegisterMap& map, Condition& condition) {
   const MapPhrase phrase = split_phrase(text);
   condition.point = require_point(table, at, phrase.left, map);
-  if (condition.point < 0) return false;
+  if (condition.point < 0) return;
   condition.test = phrase.op == "="     ? Condition::Test::kEqual
                    : phrase.op == "has" ? Condition::Test::kHasBits
                                         : Condition::Test::kNotEqual;
-  if (phrase.op.empty()) return true;  // "point" alone: not 0
+  if (phrase.op.empty()) return;  // "point" alone: not 0
   if (parse_value(map, condition.point, phrase.right, condition.value)) {
-    return can_hold(table, at, map, condition, text);
+    return check_can_hold(table, at, map, condition, text);
   }
   table.fail_at(at,
                 quoted(phrase.right) + " is neither a number nor a name of " + quoted(phrase.left));
-  return false;
 }
 
 }  // namespace bess
