@@ -1,4 +1,4 @@
-#include "edge/prices/fetch/day_ahead_store.h"
+#include "edge/prices/fetch/day_ahead_feed.h"
 
 #include <algorithm>
 #include <cmath>

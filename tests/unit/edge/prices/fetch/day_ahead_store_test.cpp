@@ -1,5 +1,5 @@
 // Answers of any source: what is stored, and what is known when.
-#include "edge/prices/fetch/day_ahead_store.h"
+#include "edge/prices/fetch/day_ahead_feed.h"
 
 #include <gtest/gtest.h>
 
