@@ -1,4 +1,4 @@
-#include "edge/core/supervision/soc_monitor.h"
+#include "edge/core/supervision/response_monitor.h"
 
 #include <algorithm>
 #include <numeric>
