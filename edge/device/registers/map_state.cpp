@@ -130,8 +130,7 @@ void read_map_watchdog(TomlTable& root, RegisterMap& map) {
   if (map.watchdog.kind == Watchdog::Kind::kNone) {
     map.watchdog.duration_s = map.watchdog.refresh_s = 0;  // a variant may inherit them
   }
-  if (map.watchdog.kind != Watchdog::Kind::kNone &&
-      map.watchdog.refresh_s * 2 > map.watchdog.duration_s) {
+  if (map.watchdog.refresh_s * 2 > map.watchdog.duration_s) {
     table.fail("refresh_s", "must be at most half of duration_s: one refresh may be lost");
   }
   table.finish();
