@@ -7,7 +7,6 @@
 #include <functional>
 #include <vector>
 
-#include "edge/prices/fetch/day_ahead_feed.h"
 #include "tests/support/market_zone.h"
 #include "tests/support/temporary_folder.h"
 
