@@ -12,6 +12,7 @@
 #include "edge/device/battery/commission.h"
 #include "edge/device/battery/modbus_battery.h"
 #include "edge/records/log/journal.h"
+#include "shared/host/text.h"
 
 namespace bess {
 namespace {
@@ -117,15 +118,14 @@ int ask_for_yes(const EdgeConfig& config, const CommissionSettings& settings) {
 }
 
 void complain_about_release(const EdgeConfig& config, const CommissionResult& result) {
-  char timer[64] = "; it has no dead-man timer: reset it by hand";
-  if (config.control.has_watchdog) {
-    std::snprintf(timer, sizeof timer, "; its dead-man timer ends it after %d s",
-                  config.control.order_duration_s);
-  }
+  const std::string timer =
+      config.control.has_watchdog
+          ? formatted("; its dead-man timer ends it after %d s", config.control.order_duration_s)
+          : "; it has no dead-man timer: reset it by hand";
   report(JournalLevel::kError,
          "commission %s: the battery was not released (%s) and may still follow %d W%s",
          battery_place(config.battery).c_str(), status_text(result.release_status).data(),
-         result.ordered_power_w, timer);
+         result.ordered_power_w, timer.c_str());
 }
 
 /// Doubts are reported with their values and cause no refusal.

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <sstream>
 
 #include "edge/app/storage/storage_health.h"
 #include "edge/records/log/atomic_file.h"
@@ -138,42 +137,38 @@ std::string battery_text(const EdgeConfig& config) {
 }
 
 /// Measured values, for people only.
-void add_direction(std::string_view name, const DirectionResult& direction,
-                   std::ostringstream& text) {
+void add_direction(const char* name, const DirectionResult& direction, std::string& text) {
   if (!direction.is_tested) return;
   const StepResponseResult& speed = direction.speed;
-  text << name << "_measured_w = " << direction.measured_power_w << "\n"
-       << name << "_lag_ms = " << std::lround(speed.dynamics.dead_time_s * 1e3) << "\n"
-       << name << "_time_constant_ms = " << std::lround(speed.dynamics.time_constant_s * 1e3)
-       << "\n"
-       << name << "_ramp_w_per_s = " << ramp_w_per_s(speed)
-       << (ramp_w_per_s(speed) == 0 ? "  # faster than measurable\n" : "\n");
+  add_formatted(text, "%s_measured_w = %d\n%s_lag_ms = %ld\n%s_time_constant_ms = %ld\n", name,
+                direction.measured_power_w, name, std::lround(speed.dynamics.dead_time_s * 1e3),
+                name, std::lround(speed.dynamics.time_constant_s * 1e3));
+  add_formatted(text, "%s_ramp_w_per_s = %d%s\n", name, ramp_w_per_s(speed),
+                ramp_w_per_s(speed) == 0 ? "  # faster than measurable" : "");
 }
 
 std::string file_text(const EdgeConfig& config, const CommissionResult& result,
                       std::int64_t utc_s) {
-  std::ostringstream text;
-  text << "# Written by: bess-edge commission. Copies: commissioned.copy in this folder,\n"
-          "# and [state] run_folder; a lost or damaged file is restored from a copy.\n"
-       << "map = \"" << config.battery.map.name.view() << "\"\n"
-       << "variant = \"" << config.battery.map.variant.view() << "\"\n"
-       << "map_crc32 = \"" << map_checksum(config) << "\"\n"
-       << "battery = \"" << battery_text(config) << "\"\n"
-       << "ordered_power_w = " << result.ordered_power_w << "\n"
-       << "measured_power_w = " << result.measured_power_w << "\n"
-       << "utc = \"" << utc_text(utc_s).view() << "\"\n";
+  const RegisterMap& map = config.battery.map;
+  std::string text = formatted(
+      "# Written by: bess-edge commission. Copies: commissioned.copy in this folder,\n"
+      "# and [state] run_folder; a lost or damaged file is restored from a copy.\n"
+      "map = \"%s\"\nvariant = \"%s\"\nmap_crc32 = \"%s\"\nbattery = \"%s\"\n"
+      "ordered_power_w = %d\nmeasured_power_w = %d\nutc = \"%s\"\n",
+      map.name.c_str(), map.variant.c_str(), map_checksum(config).c_str(),
+      battery_text(config).c_str(), result.ordered_power_w, result.measured_power_w,
+      utc_text(utc_s).c_str());
   add_direction("charge", result.charge, text);
   add_direction("discharge", result.discharge, text);
   if (result.meter != MeterVerdict::kNotAsked) {
-    text << "meter_percent = " << result.meter_percent << "\n";
+    add_formatted(text, "meter_percent = %d\n", result.meter_percent);
   }
-  text << "# Optional points of this device, now required.\npresent = [";
+  text += "# Optional points of this device, now required.\npresent = [";
   for (const std::int8_t point : result.present) {
-    text << (point == result.present[0] ? "\"" : ", \"")
-         << config.battery.map.points[point].name.view() << "\"";
+    add_formatted(text, "%s\"%s\"", point == result.present[0] ? "" : ", ",
+                  map.points[point].name.c_str());
   }
-  text << "]\n";
-  return text.str();
+  return text + "]\n";
 }
 
 /// Expected text of every place.
