@@ -43,7 +43,6 @@ class ExchangeRecorder {
   bool finish(FileMessage& error);
 
   [[nodiscard]] std::int64_t exchanges() const { return written_; }
-  [[nodiscard]] std::int64_t dropped() const { return dropped_; }
 
  private:
   static constexpr std::size_t kQueueLength = 128;  // about 20 per control cycle

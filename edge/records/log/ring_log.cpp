@@ -95,7 +95,6 @@ bool RingLog::open(const char* path, std::int64_t capacity, FileMessage& error) 
   if (opened < 0 && errno != ENOENT) return fail_with_errno(path, "cannot open the log", error);
   close_file();
   fd_ = opened;
-  damage_.was_absent = fd_ < 0;
   const bool is_sound = fd_ >= 0 && understand(capacity);
   if (fd_ >= 0 && !is_sound) set_aside(path);
   const bool takes_records = is_sound && record_bytes_ == kRecordBytes;
@@ -117,7 +116,6 @@ bool RingLog::open(const char* path, std::int64_t capacity, FileMessage& error) 
 bool RingLog::open_read_only(const char* path, std::int64_t capacity, FileMessage& error) {
   if (fd_ < 0) {  // else already read, and unchanged
     fd_ = ::open(path, O_RDONLY | O_CLOEXEC);
-    damage_.was_absent = fd_ < 0;
     damage_.is_set_aside = fd_ >= 0 && !understand(capacity);
     damage_.is_read_only = damage_.is_set_aside;
     if (damage_.is_set_aside) close_file();

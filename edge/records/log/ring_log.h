@@ -31,7 +31,6 @@ struct RingDamage {
   std::int64_t newest_lost = 0;      ///< of both, directly after the newest intact record
   bool is_set_aside = false;         ///< the file was unreadable
   bool is_read_only = false;         ///< and stays, because the disk is read-only
-  bool was_absent = false;           ///< no file, which alone is no damage
 
   [[nodiscard]] bool is_any() const {
     return header != Header::kSound || broken_records > 0 || missing_records > 0 || is_set_aside;
