@@ -127,14 +127,13 @@ struct Simulator {
 /// SunSpec 124, by offsets from the model's id: 2 WChaMax, 5 StorCtl_Mod (1: limit of charging, 2:
 /// of discharging, 3: both), 8 ChaState, 12 OutWRte and 13 InWRte in the percent of WChaMax. A
 /// negative limit of one direction orders the other.
-Value storage_order_w(Wire wire, std::optional<int> model) {
+Value storage_order_w(Wire wire, int model) {
   constexpr double kWhole = 10'000;  // scale -2 in both devices
-  if (!model) return std::nullopt;
-  const auto mode = wire.word(1, *model + 5);
+  const auto mode = wire.word(1, model + 5);
   if (!mode || *mode == 0) return std::nullopt;
-  const Value rating_w = wire.word(1, *model + 2);
+  const Value rating_w = wire.word(1, model + 2);
   const bool limits_discharging = *mode == 2;
-  const Value rate = wire.signed16(1, *model + (limits_discharging ? 12 : 13));
+  const Value rate = wire.signed16(1, model + (limits_discharging ? 12 : 13));
   if (!rate || !rating_w) return std::nullopt;
   return *rating_w * *rate / kWhole * (limits_discharging ? -1 : 1);
 }
@@ -147,13 +146,15 @@ struct FroniusGen24 {
   static Value ordered_w(Wire wire) { return storage_order_w(wire, 40'343); }
 };
 
+constexpr int kNowhere = -0x1'0000;  ///< of a model that is missing: no register is near
+
 /// Address of a model in the chain that was read: "SunS" at 40000, then id and length of each.
-std::optional<int> find_model(Wire wire, int id) {
-  if (wire.word(1, 40'000) != 0x5375 || wire.word(1, 40'001) != 0x6E53) return std::nullopt;
+int find_model(Wire wire, int id) {
+  if (wire.word(1, 40'000) != 0x5375 || wire.word(1, 40'001) != 0x6E53) return kNowhere;
   for (int at = 40'002;;) {
     const auto found = wire.word(1, at);
     const auto length = wire.word(1, at + 1);
-    if (!found || !length || *found == 0xFFFF) return std::nullopt;
+    if (!found || !length || *found == 0xFFFF) return kNowhere;
     if (*found == id) return at;
     at += 2 + *length;
   }
@@ -168,14 +169,12 @@ Value scaled(const Value& value, const Value& exponent) {
 /// SoC's exponent.
 struct SunSpec124 {
   static Value soc_frac(Wire wire) {
-    const auto at = find_model(wire, 124);
-    if (!at) return std::nullopt;
-    return times(scaled(wire.word(1, *at + 8), wire.signed16(1, *at + 22)), 0.01);
+    const int at = find_model(wire, 124);
+    return times(scaled(wire.word(1, at + 8), wire.signed16(1, at + 22)), 0.01);
   }
   static Value power_w(Wire wire) {
-    const auto at = find_model(wire, 103);
-    if (!at) return std::nullopt;
-    return times(scaled(wire.signed16(1, *at + 14), wire.signed16(1, *at + 15)), -1);
+    const int at = find_model(wire, 103);
+    return times(scaled(wire.signed16(1, at + 14), wire.signed16(1, at + 15)), -1);
   }
   static Value ordered_w(Wire wire) { return storage_order_w(wire, find_model(wire, 124)); }
 };
@@ -184,19 +183,17 @@ struct SunSpec124 {
 /// 802 +11 SoC, its exponent at +56, +47 power, its exponent at +63.
 struct SunSpec704 {
   static Value soc_frac(Wire wire) {
-    const auto at = find_model(wire, 802);
-    if (!at) return std::nullopt;
-    return times(scaled(wire.word(1, *at + 11), wire.signed16(1, *at + 56)), 0.01);
+    const int at = find_model(wire, 802);
+    return times(scaled(wire.word(1, at + 11), wire.signed16(1, at + 56)), 0.01);
   }
   static Value power_w(Wire wire) {
-    const auto at = find_model(wire, 802);
-    if (!at) return std::nullopt;
-    return times(scaled(wire.signed16(1, *at + 47), wire.signed16(1, *at + 63)), -1);
+    const int at = find_model(wire, 802);
+    return times(scaled(wire.signed16(1, at + 47), wire.signed16(1, at + 63)), -1);
   }
   static Value ordered_w(Wire wire) {
-    const auto at = find_model(wire, 704);
-    if (!at || wire.word(1, *at + 22) != 1) return std::nullopt;
-    return times(scaled(wire.signed32(1, *at + 24), wire.signed16(1, *at + 55)), -1);
+    const int at = find_model(wire, 704);
+    if (wire.word(1, at + 22) != 1) return std::nullopt;
+    return times(scaled(wire.signed32(1, at + 24), wire.signed16(1, at + 55)), -1);
   }
 };
 
