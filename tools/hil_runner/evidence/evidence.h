@@ -29,13 +29,11 @@ struct Evidence {
   std::vector<MinuteRecord> minutes;  ///< energy exchanged
   std::vector<CycleRecord> log;       ///< as in the edge's ring, the oldest first
   std::vector<WireReading> wire;      ///< decoded by the witness; empty: no witness
-  std::uint64_t sent = 0;  ///< checksum of all frames of the edge and their times; virtual
-  bool order_ends_by_itself = true;   ///< the map has a timer
-  std::int32_t order_duration_s = 0;  ///< of that timer
-  std::int32_t edge_exit_code = 0;    ///< of the last edge; 128 + signal if killed
-  std::string edge_last_line;         ///< last line of its output
-  bool is_alive_at_end = false;       ///< simulators answered until they were stopped
-  double slack_s = 0;                 ///< tolerated lateness of this machine, simulated s
+  std::uint64_t sent = 0;           ///< checksum of all frames of the edge and their times; virtual
+  std::int32_t edge_exit_code = 0;  ///< of the last edge; 128 + signal if killed
+  std::string edge_last_line;       ///< last line of its output
+  bool is_alive_at_end = false;     ///< simulators answered until they were stopped
+  double slack_s = 0;               ///< tolerated lateness of this machine, simulated s
 };
 
 }  // namespace bess

@@ -110,7 +110,7 @@ void judge_held(JudgeContext& judging) {
 void judge_released(JudgeContext& judging) {
   if (judging.evidence.orders.empty()) return;
   const bool was_killed = judging.evidence.edge_exit_code == 128 + SIGKILL;
-  if (was_killed && !judging.evidence.order_ends_by_itself) return;
+  if (was_killed && !judging.config.control.has_watchdog) return;
   // The order of a killed edge expires by itself if the scenario is long enough.
   const CommandInForce last = judging.command_at(INT64_MAX);
   if (last.is_driven)
@@ -119,9 +119,9 @@ void judge_released(JudgeContext& judging) {
 }
 
 void judge_safe_state(JudgeContext& judging) {
-  if (!judging.evidence.order_ends_by_itself) return;
+  if (!judging.config.control.has_watchdog) return;
   const std::int64_t timer_ns =
-      judging.evidence.order_duration_s * kSecondNs + kStepNs + judging.slack_ns();
+      judging.config.control.order_duration_s * kSecondNs + kStepNs + judging.slack_ns();
   for (const Window& window : judging.lost) {
     const std::int64_t end_ns = std::min(window.to_ns, judging.scenario.end_utc_ns());
     for (std::int64_t t = window.from_ns + timer_ns; t < end_ns; t += 10 * kSecondNs) {
@@ -129,7 +129,7 @@ void judge_safe_state(JudgeContext& judging) {
       if (command.power_w == 0) continue;
       return judging.find(t,
                           fmt::format("no power {} s after loss of link or process",
-                                      judging.evidence.order_duration_s + kSecondsPerStep),
+                                      judging.config.control.order_duration_s + kSecondsPerStep),
                           watts(command));
     }
   }

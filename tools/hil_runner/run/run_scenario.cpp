@@ -29,8 +29,6 @@ void run_and_judge(const Scenario& scenario, const WallSite& site, Outcome& outc
                                                edge_settings(scenario, outcome.prices, {}));
   outcome.evidence = outcome.is_virtual ? run_virtual(scenario, outcome.prices, config)
                                         : run_wall(scenario, outcome.prices, site, folder);
-  outcome.evidence.order_ends_by_itself = config.control.has_watchdog;
-  outcome.evidence.order_duration_s = config.battery.map.watchdog.duration_s;
   if (outcome.is_virtual) outcome.signature = signature_of(outcome.evidence);
   outcome.findings = judge({scenario, outcome.prices, config, outcome.evidence});
 }

@@ -42,7 +42,6 @@ struct HandMade {
     stopping.mode = Mode::kStopping;
     evidence.log.push_back(stopping);
     evidence.is_alive_at_end = true;
-    evidence.order_duration_s = 300;
   }
   static std::int64_t at_ns(int minute, int second = 0) {
     return (kStartS + 60 * minute + second) * kNanosecondsPerSecond;
