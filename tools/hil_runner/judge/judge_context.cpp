@@ -139,17 +139,12 @@ CommandInForce JudgeContext::command_at(std::int64_t utc_ns) const {
 }
 
 bool JudgeContext::device_has_soc_limits() const {
-  for (const CommandSequence& sequence : config.battery.map.command) {
-    for (const BlockWrite& write : sequence.writes) {
-      for (const WriteValue& value : write.values) {
-        const bool is_limit = value.argument == Argument::kSocLimit ||
-                              value.argument == Argument::kSocMin ||
-                              value.argument == Argument::kSocMax;
-        if (is_limit) return true;
-      }
-    }
-  }
-  return false;
+  bool has_limits = false;
+  for_each_written(config.battery.map, [&](const WriteValue& value) {
+    has_limits = has_limits || value.argument == Argument::kSocLimit ||
+                 value.argument == Argument::kSocMin || value.argument == Argument::kSocMax;
+  });
+  return has_limits;
 }
 
 double JudgeContext::soc_margin_frac() const {

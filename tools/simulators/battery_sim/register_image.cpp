@@ -101,20 +101,16 @@ void RegisterImage::lay_out_models() {
 
 /// Points for duration and limits of an order.
 void RegisterImage::find_arguments() {
-  for (const CommandSequence& sequence : map_.command) {
-    for (const BlockWrite& write : sequence.writes) {
-      for (const WriteValue& value : write.values) {
-        if (value.argument == Argument::kDuration) timer_ = value.point;
-        if (value.argument == Argument::kDurationMinutes) {
-          timer_ = value.point;
-          timer_counts_minutes_ = true;
-        }
-        if (value.argument == Argument::kSocLimit) soc_limit_ = value.point;
-        if (value.argument == Argument::kSocMin) soc_min_ = value.point;
-        if (value.argument == Argument::kSocMax) soc_max_ = value.point;
-      }
+  for_each_written(map_, [this](const WriteValue& value) {
+    if (value.argument == Argument::kDuration) timer_ = value.point;
+    if (value.argument == Argument::kDurationMinutes) {
+      timer_ = value.point;
+      timer_counts_minutes_ = true;
     }
-  }
+    if (value.argument == Argument::kSocLimit) soc_limit_ = value.point;
+    if (value.argument == Argument::kSocMin) soc_min_ = value.point;
+    if (value.argument == Argument::kSocMax) soc_max_ = value.point;
+  });
 }
 
 /// The time between requests adds to the delay.
