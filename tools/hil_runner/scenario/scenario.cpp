@@ -121,10 +121,6 @@ void read_battery_fault(TomlTable table, Scenario& scenario) {
   table.finish();
 }
 
-TomlTable sub(TomlTable& table, const std::string& key) {
-  return {table.table(key), table.file(), "[" + key + "]", table.error()};
-}
-
 /// Calls `read(table, scenario)` for each table of a list.
 void each(TomlTable& table, const std::string& key, Scenario& scenario,
           void (*read)(TomlTable, Scenario&)) {
@@ -139,7 +135,7 @@ void read_battery_faults(TomlTable& table, Scenario& scenario) {
   const TomlValue* const node = table.node("battery_fault");
   if (node == nullptr) return;
   if (node->as<TomlArray>() == nullptr)
-    return read_battery_fault(sub(table, "battery_fault"), scenario);
+    return read_battery_fault(table.child("battery_fault"), scenario);
   each(table, "battery_fault", scenario, read_battery_fault);
   const auto& faults = scenario.battery_faults;
   if (table.ok() && faults.size() > 1 && scenario.runs_wall) {
@@ -283,20 +279,20 @@ Scenario read_scenario(const std::string& path) {
   read_text(table, "title", scenario.title);
   table.boolean("witness", scenario.witness);
   read_time(table, scenario);
-  read_battery(sub(table, "battery"), folder, scenario.battery);
-  read_prices(sub(table, "prices"), folder, scenario);
-  read_house(sub(table, "house"), scenario);
-  read_meter(sub(table, "meter"), folder, scenario.meter);
-  read_meter_fault(sub(table, "meter_fault"), scenario);
+  read_battery(table.child("battery"), folder, scenario.battery);
+  read_prices(table.child("prices"), folder, scenario);
+  read_house(table.child("house"), scenario);
+  read_meter(table.child("meter"), folder, scenario.meter);
+  read_meter_fault(table.child("meter_fault"), scenario);
   read_battery_faults(table, scenario);
-  read_price_fault(sub(table, "price_fault"), scenario);
-  read_day_ahead(sub(table, "day_ahead"), folder, scenario);
+  read_price_fault(table.child("price_fault"), scenario);
+  read_day_ahead(table.child("day_ahead"), folder, scenario);
   each(table, "event", scenario, read_event);
   each(table, "expect", scenario, read_expectation);
-  read_edge(sub(table, "edge"), scenario);
-  read_judge(sub(table, "judge"), scenario);
+  read_edge(table.child("edge"), scenario);
+  read_judge(table.child("judge"), scenario);
   std::ranges::stable_sort(scenario.events, {}, &ScenarioEvent::at_min);
-  read_same_without(sub(table, "same_without"), scenario);
+  read_same_without(table.child("same_without"), scenario);
   check_site(table, scenario);
   check_events(table, scenario);
   table.finish();
