@@ -30,9 +30,7 @@ void read_battery(TomlTable table, const fs::path& folder, ScenarioBattery& batt
     table.fail("map", "names no register map: " + battery.map + kMapsOfTheBuild);
   }
   read_text(table, "variant", battery.variant);
-  int transport = 0;
-  table.choice("transport", transport, {"tcp", "rtu"});
-  battery.rtu = transport == 1;
+  table.choice("transport", battery.rtu, {"tcp", "rtu"});
   read_decimal(table, "soc", battery.soc_frac, 0, 1);
   read_decimal(table, "power_w", battery.physics.power_w_max, 1, 1e8);
   read_decimal(table, "capacity_wh", battery.physics.capacity_wh, 1, 1e9);
@@ -106,9 +104,7 @@ void read_battery_fault(TomlTable table, Scenario& scenario) {
   read_fault_times(table, scenario.minutes, fault);
   table.integer("every", fault.every, 1, 1'000'000);
   read_decimal(table, "probability", fault.probability, 0, 1);
-  std::int64_t seed = 1;
-  table.integer("seed", seed, 0, INT64_MAX);
-  fault.seed = static_cast<std::uint64_t>(seed);
+  table.integer("seed", fault.seed, 0, INT64_MAX);
   table.integer("period_s", fault.period_s, 1, kSecondsPerDay);
   table.integer("late_ms", fault.late_ms, 1, 60'000);
   table.integer("drip_ms", fault.drip_ms, 1, 60'000);

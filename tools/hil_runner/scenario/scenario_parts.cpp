@@ -56,11 +56,7 @@ void read_house(TomlTable table, Scenario& scenario) {
   read_decimal(table, "power_w", power_w, -kHouseWMax, kHouseWMax);
   if (table.has("power_w")) house.steps = {{.from_min = 0, .value = power_w}};
   read_steps(table, scenario.minutes, house.steps);
-  if (table.has("seed")) {
-    std::int64_t seed = 1;
-    table.integer("seed", seed, 0, INT64_MAX);
-    house.seed = static_cast<std::uint64_t>(seed);
-  }
+  if (table.has("seed")) table.integer("seed", house.seed.emplace(1), 0, INT64_MAX);
   table.finish();
 }
 
@@ -344,9 +340,7 @@ void read_expectation(TomlTable table, Scenario& scenario) {
   table.choice("command", command, commands);
   expectation.command = kExpectedCommands[command];
   read_range(table, "power_w", ", in W", expectation.power_w_min, expectation.power_w_max);
-  int outlook = 0;
-  table.choice("outlook", outlook, {"any", "planned", "usual", "late", "missing"});
-  expectation.outlook = static_cast<OutlookSource>(outlook);
+  table.choice("outlook", expectation.outlook, {"any", "planned", "usual", "late", "missing"});
   read_range(table, "quarter_hours", "", expectation.quarter_hours_min,
              expectation.quarter_hours_max);
   read_text(table, "reason", expectation.reason);
