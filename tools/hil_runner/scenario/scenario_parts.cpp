@@ -359,41 +359,6 @@ void read_expectation(TomlTable table, Scenario& scenario) {
 
 namespace {
 
-class Parts {
- public:
-  explicit Parts(const Scenario& scenario) : scenario_(scenario) {}
-
-  /// `take(without)` removes the part from a copy.
-  template <typename Take>
-  void add(std::string name, const Take& take) {
-    found_.push_back({.name = std::move(name), .without = scenario_});
-    take(found_.back().without);
-  }
-  template <typename Take>
-  void add_if(bool has, const char* name, const Take& take) {
-    if (has) add(name, take);
-  }
-  /// Each item of a list from `first` on, counted from 1.
-  template <typename ListOf>
-  void add_each(const char* name, std::size_t first, const ListOf& list_of) {
-    Scenario copy = scenario_;
-    for (std::size_t i = first; i < list_of(copy).size(); ++i) {
-      add(fmt::format("{} {}", name, i + 1), [&](Scenario& without) {
-        auto& list = list_of(without);
-        list.erase(list.begin() + static_cast<std::ptrdiff_t>(i));
-      });
-    }
-  }
-  /// Each line of one table for the edge; several tables as one part.
-  void add_lines(const char* table, std::string Scenario::*text);
-
-  std::vector<ScenarioPart> take() { return std::move(found_); }
-
- private:
-  const Scenario& scenario_;
-  std::vector<ScenarioPart> found_;
-};
-
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream in(text);
@@ -403,22 +368,50 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-void Parts::add_lines(const char* table, std::string Scenario::*text) {
-  const std::vector<std::string> lines = lines_of(scenario_.*text);
-  const bool are_keys = std::ranges::all_of(lines, [](const std::string& line) {
-    return line.find('=') != std::string::npos && line.front() != '[';
-  });
-  if (!are_keys) return add(fmt::format("edge {}", table), [&](Scenario& s) { (s.*text).clear(); });
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const std::string key = lines[i].substr(0, lines[i].find_first_of(" ="));
-    add(fmt::format("edge {} {}", table, key), [&](Scenario& without) {
-      (without.*text).clear();
-      for (std::size_t k = 0; k < lines.size(); ++k) {
-        if (k != i) without.*text += lines[k] + "\n";
-      }
-    });
+struct Parts {
+  const Scenario& scenario;
+  std::vector<ScenarioPart> found{};
+
+  /// `take(without)` removes the part from a copy.
+  template <typename Take>
+  void add(std::string name, const Take& take) {
+    found.push_back({.name = std::move(name), .without = scenario});
+    take(found.back().without);
   }
-}
+  template <typename Take>
+  void add_if(bool has, const char* name, const Take& take) {
+    if (has) add(name, take);
+  }
+  /// Each item of a list from `first` on, counted from 1.
+  template <typename ListOf>
+  void add_each(const char* name, std::size_t first, const ListOf& list_of) {
+    Scenario copy = scenario;
+    for (std::size_t i = first; i < list_of(copy).size(); ++i) {
+      add(fmt::format("{} {}", name, i + 1), [&](Scenario& without) {
+        auto& list = list_of(without);
+        list.erase(list.begin() + static_cast<std::ptrdiff_t>(i));
+      });
+    }
+  }
+  /// Each line of one table for the edge; several tables as one part.
+  void add_lines(const char* table, std::string Scenario::*text) {
+    const std::vector<std::string> lines = lines_of(scenario.*text);
+    const bool are_keys = std::ranges::all_of(lines, [](const std::string& line) {
+      return line.find('=') != std::string::npos && line.front() != '[';
+    });
+    if (!are_keys)
+      return add(fmt::format("edge {}", table), [&](Scenario& s) { (s.*text).clear(); });
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const std::string key = lines[i].substr(0, lines[i].find_first_of(" ="));
+      add(fmt::format("edge {} {}", table, key), [&](Scenario& without) {
+        (without.*text).clear();
+        for (std::size_t k = 0; k < lines.size(); ++k) {
+          if (k != i) without.*text += lines[k] + "\n";
+        }
+      });
+    }
+  }
+};
 
 /// The first step is a part only if another step replaces it at the start.
 std::size_t first_price_step(const std::vector<ScenarioStep>& steps) {
@@ -428,7 +421,7 @@ std::size_t first_price_step(const std::vector<ScenarioStep>& steps) {
 }  // namespace
 
 std::vector<ScenarioPart> parts_of(const Scenario& scenario) {
-  Parts parts(scenario);
+  Parts parts{scenario};
   const Scenario usual;
   const std::string usual_map = map_path(kUsualMap, "");
   parts.add_if(scenario.battery.map != usual_map, "map", [&](Scenario& s) {
@@ -468,7 +461,7 @@ std::vector<ScenarioPart> parts_of(const Scenario& scenario) {
   parts.add_lines("meter", &Scenario::edge_meter);
   parts.add_lines("limits", &Scenario::edge_limits);
   parts.add_lines("other", &Scenario::edge_other);
-  return parts.take();
+  return std::move(parts.found);
 }
 
 }  // namespace bess
