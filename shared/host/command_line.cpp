@@ -113,7 +113,6 @@ CLI::Validator number_rule(std::function<bool(double)> holds, const std::string&
   return CLI::Validator(complaint, shown);
 }
 
-/// Shorter than std::to_string().
 }  // namespace
 
 ProgramOption& ProgramOption::required() {

@@ -71,9 +71,7 @@ std::string with_escapes(std::string_view text, const std::vector<std::size_t>& 
     for (std::size_t i = 1; i < bytes; ++i) {
       code_point = code_point << 6 | (static_cast<unsigned char>(text[offset + i]) & 0x3FU);
     }
-    char escape[16];
-    std::snprintf(escape, sizeof escape, "\\U%08X", code_point);
-    escaped.append(text, done, offset - done).append(escape);
+    escaped.append(text, done, offset - done).append(formatted("\\U%08X", code_point));
     done = offset + bytes;
   }
   return escaped.append(text, done);

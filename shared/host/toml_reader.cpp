@@ -6,15 +6,6 @@
 #include "shared/host/text.h"
 
 namespace bess {
-namespace {
-
-std::string number_text(double value) { return formatted("%.10g", value); }
-
-std::string range_text(double min, double max) {
-  return "must lie between " + number_text(min) + " and " + number_text(max);
-}
-
-}  // namespace
 
 const TomlValue* TomlTable::node(std::string_view key) {
   asked_.emplace(key);
@@ -71,10 +62,10 @@ void TomlTable::number(std::string_view key, double& value, double min, double m
   if (!number) return fail(key, "must be a number");
   if (!std::isfinite(*number) || *number < min || *number > max) {
     const bool is_percent = max <= 1 && *number > 1 && *number / 100 >= min && *number / 100 <= max;
-    const std::string share = is_percent ? number_text(*number / 100) : "";
-    return fail(key, range_text(min, max) +
-                         (is_percent ? ": write " + share + " for " + number_text(*number) + " %"
-                                     : ", not at " + number_text(*number)));
+    const std::string remedy = is_percent
+                                   ? formatted(": write %.10g for %.10g %%", *number / 100, *number)
+                                   : formatted(", not at %.10g", *number);
+    return fail(key, formatted("must lie between %.10g and %.10g", min, max) + remedy);
   }
   value = *number;
 }
