@@ -335,12 +335,7 @@ void add_plant_options(ProgramCommand& command, BatteryOptions& options) {
   command.option("--map", options.map_path, "register map of the simulated device (TOML)");
   command.option("--variant", options.map_variant, "map variant (default: the first)");
   number("--soc", options.soc_frac, 0, 1, "state of charge at start, 0 to 1");
-  command.option("--power-w", options.battery.power_w_max, "rated power, W")
-      .positive()
-      .with_default();
-  command.option("--capacity-wh", options.battery.capacity_wh, "capacity, Wh")
-      .positive()
-      .with_default();
+  add_rating_options(command, options.battery);
   number("--soc-min", options.battery.soc_min_frac, 0, 1, "battery's minimum SoC, 0 to 1");
   number("--soc-max", options.battery.soc_max_frac, 0, 1, "battery's maximum SoC, 0 to 1");
   number("--efficiency", options.round_trip_efficiency, 0.01, 1, "round-trip efficiency, 0 to 1");

@@ -90,12 +90,7 @@ void add_settle_command(ProgramCommand& app) {
   command.option("--edge-log", options->edge_log, "decision log, CSV (bess-edge log --csv)")
       .required();
   command.option("--prices", options->prices, "minute file with settled prices").required();
-  command.option("--power-w", options->battery.power_w_max, "rated power, W")
-      .positive()
-      .with_default();
-  command.option("--capacity-wh", options->battery.capacity_wh, "capacity, Wh")
-      .positive()
-      .with_default();
+  add_rating_options(command, options->battery);
   add_costs(command, options->battery);
   command.flag("--json", options->json, "output as one JSON object");
   command.footer(
