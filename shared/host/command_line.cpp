@@ -243,16 +243,13 @@ ProgramOption ProgramCommand::option(const std::string& name, T& value, const st
                                                 const std::string&)
 BESS_OPTION_TYPE(std::string);
 BESS_OPTION_TYPE(std::vector<std::string>);
-BESS_OPTION_TYPE(std::vector<double>);
 BESS_OPTION_TYPE(int);
 BESS_OPTION_TYPE(double);
-BESS_OPTION_TYPE(std::uint8_t);
 BESS_OPTION_TYPE(std::uint64_t);
 BESS_OPTION_TYPE(std::int64_t);
 BESS_OPTION_TYPE(std::optional<std::string>);
 BESS_OPTION_TYPE(std::optional<int>);
 BESS_OPTION_TYPE(std::optional<double>);
-BESS_OPTION_TYPE(std::optional<std::int64_t>);
 BESS_OPTION_TYPE(std::optional<std::uint64_t>);
 #undef BESS_OPTION_TYPE
 
