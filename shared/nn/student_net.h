@@ -23,9 +23,6 @@ namespace bess {
 /// proves that no accumulator can overflow (student/student_file.h), so there is no check.
 template <int kInputs, int kOutputs>
 struct Affine {
-  static constexpr int kInputCount = kInputs;
-  static constexpr int kOutputCount = kOutputs;
-
   std::int16_t weight[kInputs][kOutputs];
   std::int32_t bias[kOutputs];
 
