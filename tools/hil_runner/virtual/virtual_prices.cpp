@@ -149,7 +149,7 @@ PriceAnswer VirtualPrices::fetch_page(const char* url, std::int32_t timeout_ms) 
   return parse_prices(reply.text, settings_.fields, time_.edge_utc_s());
 }
 
-VirtualPrices::Reply VirtualPrices::ask(RecordsQuery query, std::int32_t timeout_ms) {
+VirtualPrices::Reply VirtualPrices::ask(const RecordsQuery& query, std::int32_t timeout_ms) {
   if (time_.market() == VirtualTime::Market::kPaused) {
     return {.status = Status::kTimeout, .takes_ns = timeout_ms * kMillisecondNs};
   }
@@ -161,11 +161,8 @@ VirtualPrices::Reply VirtualPrices::ask(RecordsQuery query, std::int32_t timeout
   if (fault == MarketFault::kHttp500) {
     return {.status = Status::kHttpError, .takes_ns = kFetchNs};
   }
-  const std::int64_t market_ns =
-      time_.utc_ns() - (fault == MarketFault::kStale ? kStaleAnswerS * kNanosecondsPerSecond : 0);
-  query.hide_newest_price = fault == MarketFault::kNull;
-  if (fault == MarketFault::kFrozen) query.frozen_utc_s = scenario_.price_fault_utc_s();
-  return {.text = spoilt(fault, market_.records(query, market_ns)), .takes_ns = kFetchNs};
+  return {.text = market_.records(query, time_.utc_ns(), fault, scenario_.price_fault_utc_s()),
+          .takes_ns = kFetchNs};
 }
 
 }  // namespace bess

@@ -86,7 +86,7 @@ class VirtualPrices {
   };
   [[nodiscard]] bool begin_next();
   void fetch();
-  [[nodiscard]] Reply ask(RecordsQuery query, std::int32_t timeout_ms);
+  [[nodiscard]] Reply ask(const RecordsQuery& query, std::int32_t timeout_ms);
 
   PriceFeedSettings settings_;
   const MarketView& market_;

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
-#include <string>
 #include <string_view>
 
 namespace bess {
@@ -26,20 +25,6 @@ inline constexpr std::string_view kMarketFaultNames[] = {
     "none", "null", "http-500", "stale", "garbage", "trailing", "twice", "all", "frozen"};
 
 inline constexpr std::int64_t kStaleAnswerS = 600;
-inline constexpr const char* kGarbageAnswer = "{\"results\": [{\"dat";
-
-/// Answer changed by a fault of its text; other faults have no effect.
-inline std::string spoilt(MarketFault fault, std::string answer) {
-  if (fault == MarketFault::kGarbage) return kGarbageAnswer;
-  if (fault == MarketFault::kTrailing) return answer + answer;
-  if (fault != MarketFault::kTwice) return answer;
-  constexpr std::string_view kPrice = "\"imbalanceprice\":";
-  constexpr std::string_view kTwice = "\"imbalanceprice\":-500.0,\"imbalanceprice\":";
-  for (std::size_t at = 0; (at = answer.find(kPrice, at)) != answer.npos; at += kTwice.size()) {
-    answer.replace(at, kPrice.size(), kTwice);
-  }
-  return answer;
-}
 
 struct MarketFaultSchedule {
   MarketFault fault = MarketFault::kNone;

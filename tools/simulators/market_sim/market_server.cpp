@@ -2,6 +2,7 @@
 
 #include <httplib.h>
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
@@ -104,7 +105,7 @@ void MarketServer::answer(Dataset dataset, const httplib::Request& request,
     response.status = 500;
     return response.set_content(Json::object({{"message", "simulated fault"}}).line(), kJson);
   }
-  RecordsQuery query{.dataset = dataset, .hide_newest_price = fault == MarketFault::kNull};
+  RecordsQuery query{.dataset = dataset};
   std::string problem;
   if (!parse_query(request, query, problem)) {
     response.status = 400;
@@ -112,13 +113,10 @@ void MarketServer::answer(Dataset dataset, const httplib::Request& request,
         Json::object({{"error_code", "InvalidRESTParameterError"}, {"message", problem}});
     return response.set_content(refusal.line(), kJson);
   }
-  std::int64_t now_ns = clock_.now_utc_ns();
-  if (fault == MarketFault::kStale) now_ns -= kStaleAnswerS * kNanosecondsPerSecond;
-  if (fault == MarketFault::kFrozen) {
-    query.frozen_utc_s =
-        start_utc_ns_ / kNanosecondsPerSecond + static_cast<std::int64_t>(settings_.faults.from_s);
-  }
-  response.set_content(spoilt(fault, view_.records(query, now_ns)), kJson);
+  const double fault_s = std::min(settings_.faults.from_s, at_s);  // its begin, once it has begun
+  const std::int64_t fault_utc_s =
+      start_utc_ns_ / kNanosecondsPerSecond + static_cast<std::int64_t>(fault_s);
+  response.set_content(view_.records(query, clock_.now_utc_ns(), fault, fault_utc_s), kJson);
 }
 
 void MarketServer::answer_day_ahead(const httplib::Request& request, httplib::Response& response) {

@@ -17,6 +17,19 @@ std::string offset_time(std::int64_t utc_s) {
   return text + "+00:00";
 }
 
+/// Answer changed by a fault of its text; other faults have no effect.
+std::string spoilt(MarketFault fault, std::string answer) {
+  if (fault == MarketFault::kGarbage) return "{\"results\": [{\"dat";
+  if (fault == MarketFault::kTrailing) return answer + answer;
+  if (fault != MarketFault::kTwice) return answer;
+  constexpr std::string_view kPrice = "\"imbalanceprice\":";
+  constexpr std::string_view kTwice = "\"imbalanceprice\":-500.0,\"imbalanceprice\":";
+  for (std::size_t at = 0; (at = answer.find(kPrice, at)) != answer.npos; at += kTwice.size()) {
+    answer.replace(at, kPrice.size(), kTwice);
+  }
+  return answer;
+}
+
 }  // namespace
 
 /// Index range of completed minutes of the last 24 hours; for past days, of all.
@@ -63,11 +76,13 @@ void MarketView::freeze(std::int64_t frozen_utc_s, std::vector<Row>& rows) {
   }
 }
 
-std::string MarketView::records(const RecordsQuery& query, std::int64_t now_utc_ns) const {
+std::string MarketView::records(const RecordsQuery& query, std::int64_t now_utc_ns,
+                                MarketFault fault, std::int64_t fault_utc_s) const {
   const bool minutes = query.dataset != Dataset::kQuarterHours;
+  if (fault == MarketFault::kStale) now_utc_ns -= kStaleAnswerS * kNanosecondsPerSecond;
   std::vector<Row> rows = visible(query.dataset, now_utc_ns);
-  freeze(query.frozen_utc_s, rows);
-  if (query.hide_newest_price && !rows.empty()) rows.back().price = std::nan("");
+  if (fault == MarketFault::kFrozen) freeze(fault_utc_s, rows);
+  if (fault == MarketFault::kNull && !rows.empty()) rows.back().price = std::nan("");
   if (query.newest_first) std::reverse(rows.begin(), rows.end());
   const std::size_t first = std::min(rows.size(), static_cast<std::size_t>(query.offset));
   const std::size_t last = std::min(rows.size(), first + static_cast<std::size_t>(query.limit));
@@ -82,7 +97,8 @@ std::string MarketView::records(const RecordsQuery& query, std::int64_t now_utc_
     row.set("imbalanceprice", Decimals{rows[i].price, 3});
     results.add(std::move(row));
   }
-  return Json::object({{"total_count", rows.size()}, {"results", std::move(results)}}).line();
+  return spoilt(
+      fault, Json::object({{"total_count", rows.size()}, {"results", std::move(results)}}).line());
 }
 
 }  // namespace bess

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "shared/host/minute_file.h"
+#include "tools/simulators/market_sim/market_fault.h"
 
 namespace bess {
 
@@ -22,8 +23,6 @@ struct RecordsQuery {
   bool newest_first = true;
   int limit = 10;
   int offset = 0;
-  bool hide_newest_price = false;         ///< fault: the newest row's price is null
-  std::int64_t frozen_utc_s = INT64_MAX;  ///< fault: minutes from here have the price before it
 };
 
 class MarketView {
@@ -32,8 +31,11 @@ class MarketView {
   MarketView(MinuteSeries prices, double latency_s)
       : prices_(std::move(prices)), latency_ns_(static_cast<std::int64_t>(latency_s * 1e9)) {}
 
-  /// Answer to `/records` at an instant: one page of the rows published by then.
-  [[nodiscard]] std::string records(const RecordsQuery& query, std::int64_t now_utc_ns) const;
+  /// Answer to `/records` at an instant: one page of the rows published by then, changed by a fault
+  /// of its rows or text that began at `fault_utc_s`.
+  [[nodiscard]] std::string records(const RecordsQuery& query, std::int64_t now_utc_ns,
+                                    MarketFault fault = MarketFault::kNone,
+                                    std::int64_t fault_utc_s = 0) const;
   [[nodiscard]] std::int64_t first_utc_s() const { return prices_.start_utc_s; }
   [[nodiscard]] std::int64_t last_utc_s() const { return prices_.utc_s(prices_.size() - 1); }
 
