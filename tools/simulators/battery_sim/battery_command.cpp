@@ -52,15 +52,6 @@ std::string place_of(const BatteryServerSettings& settings, const BatteryServer&
                                         : settings.serial_device;
 }
 
-/// Any free port, several clients; a meter fault applies for its whole time span.
-BatteryServerSettings meter_defaults() {
-  BatteryServerSettings settings;
-  settings.port = 0;
-  settings.clients_max = 4;
-  settings.faults.every = 1;
-  return settings;
-}
-
 struct BatteryOptions {
   BatteryServerSettings server;
   ClockOptions clock;
@@ -77,7 +68,8 @@ struct BatteryOptions {
   std::uint64_t house_seed = 1;
   std::string meter_map_path;
   std::string meter_variant;
-  BatteryServerSettings meter = meter_defaults();
+  /// Any free port, several clients; a fault applies for its whole time span.
+  BatteryServerSettings meter{.port = 0, .clients_max = 4, .faults = {.every = 1}};
   std::vector<std::string> meter_fault_names;
   std::string replay_path;  ///< empty: no replay
   bool accept_cut = false;

@@ -120,9 +120,9 @@ const BatteryFaultInfo* find_fault(std::string_view name);
 const char* battery_fault_name(BatteryFault fault);
 
 struct FaultSchedule {
-  std::vector<BatteryFault> faults;  ///< one of them at a time
-  std::int32_t every = 10;           ///< at every Nth opportunity
-  double probability = 0;            ///< above 0: per opportunity, instead of `every`
+  std::vector<BatteryFault> faults{};  ///< one of them at a time
+  std::int32_t every = 10;             ///< at every Nth opportunity
+  double probability = 0;              ///< above 0: per opportunity, instead of `every`
   std::uint64_t seed = 1;
   double from_s = 0;  ///< simulated seconds since the simulator's start
   double to_s = std::numeric_limits<double>::infinity();

@@ -37,12 +37,12 @@ struct BatteryServerSettings {
   std::string host = "127.0.0.1";
   std::int32_t port = 1502;  ///< 0: any free port
   std::int32_t clients_max = 1;
-  std::string serial_device;  ///< not empty: RTU instead of TCP
+  std::string serial_device{};  ///< not empty: RTU instead of TCP
   std::int32_t baud = 9'600;
   char parity = 'N';
   std::int32_t stop_bits = 1;
   std::int32_t response_delay_ms = 0;
-  FaultSchedule faults;
+  FaultSchedule faults{};
 };
 
 class BatteryServer {
