@@ -210,11 +210,10 @@ struct Scenario {
   /// The edge has a limit file.
   [[nodiscard]] bool has_limits() const;
   [[nodiscard]] std::int64_t utc_ns_at(double minute) const;
-  /// Some fault of the battery is of this kind: `is_kind(BatteryFault)`.
-  template <typename IsKind>
-  [[nodiscard]] bool has_battery_fault(const IsKind& is_kind) const {
-    return std::ranges::any_of(battery_faults, [&](const FaultSchedule& fault) {
-      return std::ranges::any_of(fault.faults, is_kind);
+  /// Some fault of the battery changes the grid power that it shows.
+  [[nodiscard]] bool has_grid_fault() const {
+    return std::ranges::any_of(battery_faults, [](const FaultSchedule& fault) {
+      return std::ranges::any_of(fault.faults, is_of_grid);
     });
   }
   /// Start of the price fault.

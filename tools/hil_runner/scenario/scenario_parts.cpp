@@ -130,7 +130,7 @@ void check_site(TomlTable& root, const Scenario& scenario) {
     return root.fail("edge", fmt::format("other: lines of {} belong to the key {}", table,
                                          table[1] == 'm' ? "meter" : "limits"));
   }
-  if (scenario.meter.source != kBattery && scenario.has_battery_fault(is_of_grid)) {
+  if (scenario.meter.source != kBattery && scenario.has_grid_fault()) {
     root.fail("battery_fault",
               "kinds: grid-... need [meter] map = \"battery\"; for a meter use [meter_fault]");
   }

@@ -34,7 +34,7 @@ constexpr Subject kSubjects[] = {
     // For a wrong meter the limits are not the subject.
     {"limits of the connection",
      [](Scenario& s) {
-       const bool lies = !s.meter.fault.faults.empty() || s.has_battery_fault(is_of_grid);
+       const bool lies = !s.meter.fault.faults.empty() || s.has_grid_fault();
        const bool has = !s.edge_meter.empty() && !lies;
        s.edge_meter.clear();
        return has;
