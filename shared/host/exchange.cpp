@@ -82,7 +82,7 @@ class FlowIntegrator {
     }
     count(intervals.energy_wh(), until);
     if (is_gap(from, until)) anchor(until);
-    order_before_w_ = from.is_ordered ? from.order_w : from.power_w;
+    order_before_w_ = ordered_w(from);
   }
 
  private:
@@ -280,13 +280,8 @@ std::optional<SettledQuarter> QuarterPrices::find(std::int64_t utc_s) const {
 
 namespace {
 
-/// Energy of one quarter-hour.
-struct Flow {
-  double charged_wh = 0;
-  double discharged_wh = 0;
-};
-
-QuarterHourMoney money_of(const Flow& flow, const std::optional<SettledQuarter>& price,
+/// Of the energy of one quarter-hour.
+QuarterHourMoney money_of(const ExchangedDay& flow, const std::optional<SettledQuarter>& price,
                           const BatteryParameters& terms) {
   QuarterHourMoney money{.quarter_hours = 1};
   if (!price) {
@@ -325,6 +320,12 @@ void QuarterHourMoney::add(const QuarterHourMoney& other) {
   unpriced += other.unpriced;
 }
 
+void ExchangedDay::add(const Exchange& exchange) {
+  charged_wh += exchange.charged_wh();
+  discharged_wh += exchange.discharged_wh();
+  if (!exchange.is_seen) unseen_wh += std::fabs(exchange.energy_wh);
+}
+
 void ExchangedDay::add(const ExchangedDay& other) {
   charged_wh += other.charged_wh;
   discharged_wh += other.discharged_wh;
@@ -336,17 +337,12 @@ std::map<std::int32_t, ExchangedDay> exchanged_days(std::span<const ExchangeSamp
                                                     const QuarterPrices& prices,
                                                     const BatteryParameters& terms) {
   std::map<std::int32_t, ExchangedDay> days;
-  std::map<std::int64_t, Flow> quarters;  // by start
+  std::map<std::int64_t, ExchangedDay> quarters;  // energy by start
   for_each_exchange(samples, [&](const Exchange& exchange) {
     if (!exchange.is_seen && exchange.energy_wh == 0) return;
     const auto utc_s = static_cast<std::int64_t>(exchange.from_utc_s);
-    ExchangedDay& day = days[local_day_at(utc_s)];
-    Flow& quarter = quarters[start_of(utc_s)];
-    day.charged_wh += exchange.charged_wh();
-    day.discharged_wh += exchange.discharged_wh();
-    quarter.charged_wh += exchange.charged_wh();
-    quarter.discharged_wh += exchange.discharged_wh();
-    if (!exchange.is_seen) day.unseen_wh += std::fabs(exchange.energy_wh);
+    days[local_day_at(utc_s)].add(exchange);
+    quarters[start_of(utc_s)].add(exchange);
   });
   for (const auto& [start_utc_s, flow] : quarters) {
     days[local_day_at(start_utc_s)].money.add(money_of(flow, prices.find(start_utc_s), terms));

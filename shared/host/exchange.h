@@ -131,6 +131,7 @@ struct ExchangedDay {
   double unseen_wh = 0;  ///< of both, from the state of charge only
   QuarterHourMoney money{};
 
+  void add(const Exchange& exchange);  ///< energy only
   void add(const ExchangedDay& other);
 };
 
