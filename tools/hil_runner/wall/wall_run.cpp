@@ -29,11 +29,12 @@ namespace bess {
 namespace {
 
 /// Builder of a command line.
-class Options {
- public:
+struct Options {
+  std::vector<std::string> words{};
+
   template <typename Value>
   void add(const std::string& name, const Value& value) {
-    words_.insert(words_.end(), {name, fmt::format("{}", value)});
+    words.insert(words.end(), {name, fmt::format("{}", value)});
   }
   /// Without --to-s: until the end.
   void add_span(const std::string& prefix, double from_s, double to_s) {
@@ -50,10 +51,6 @@ class Options {
     add(prefix + "-on-s", schedule.on_s);
     add(prefix + "-off-s", schedule.off_s);
   }
-  [[nodiscard]] std::vector<std::string> take() { return std::move(words_); }
-
- private:
-  std::vector<std::string> words_;
 };
 
 void add_plant(Options& options, const ScenarioBattery& battery) {
@@ -128,7 +125,7 @@ std::vector<std::string> battery_options(const Scenario& scenario, const std::st
   }
   add_house(options, scenario, folder);
   add_meter(options, scenario.meter);
-  return options.take();
+  return options.words;
 }
 
 /// `prices`: minute file. Writes a file for day-ahead prices.
@@ -139,11 +136,11 @@ std::vector<std::string> market_options(const Scenario& scenario, const std::str
   options.add("--prices", prices);
   options.add("--latency-s", scenario.prices.latency_s);
   add_day_ahead(options, scenario, folder);
-  if (fault.fault == MarketFault::kNone) return options.take();
+  if (fault.fault == MarketFault::kNone) return options.words;
   options.add("--fault", kMarketFaultNames[static_cast<int>(fault.fault)]);
   options.add("--fault-every", fault.every);
   options.add_span("--fault", fault.from_s, fault.to_s);
-  return options.take();
+  return options.words;
 }
 
 /// Worst wake-up latency of this machine during the life of this object.
