@@ -169,18 +169,11 @@ void read_price_fault(TomlTable table, Scenario& scenario) {
 
 void read_judge(TomlTable table, Scenario& scenario) {
   for (const RuleInfo& info : kRuleInfos) scenario.invariants.emplace_back(info.name);
-  const auto known = [&](const TomlValue& item) {
-    const auto* const name = item.as<std::string>();
-    return name == nullptr ? scenario.invariants.end()
-                           : std::ranges::find(scenario.invariants, *name);
-  };
   if (const TomlArray* const list = table.array("all_but")) {
     for (const TomlValue& item : *list) {
-      const auto found = known(item);
-      if (found == scenario.invariants.end()) {
+      const auto* const name = item.as<std::string>();
+      if (name == nullptr || std::erase(scenario.invariants, *name) == 0) {
         table.fail_at(item, "unknown rule (see bess-hil run --invariants)");
-      } else {
-        scenario.invariants.erase(found);
       }
     }
   }
