@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include <cstring>
+#include <bit>
 #include <fstream>
 
 #include "edge/records/log/record_codec.h"
@@ -14,11 +14,7 @@ namespace bess {
 
 namespace {
 
-std::int64_t bits(double value) {
-  std::int64_t out = 0;
-  std::memcpy(&out, &value, sizeof out);
-  return out;
-}
+std::int64_t bits(double value) { return std::bit_cast<std::int64_t>(value); }
 
 void add(const CycleRecord& c, Signature& signature) {
   const BatteryMeasurement& m = c.measurement;
@@ -35,6 +31,19 @@ void add(const CycleRecord& c, Signature& signature) {
   for (const char letter : reason_name(c.reason)) signature.add(letter);
 }
 
+/// Checksum of all fields of the edge's records, and of all bytes that it sent with their times.
+std::uint64_t pinned_number_of(const Evidence& evidence) {
+  Signature signature;
+  RecordBytes bytes;
+  for (const CycleRecord& cycle : evidence.log) {
+    encode_record(cycle, 0, bytes);
+    for (const std::uint8_t byte : bytes) signature.add(byte);
+  }
+  signature.add(static_cast<std::int64_t>(evidence.sent));
+  signature.add(evidence.edge_exit_code);
+  return signature.value();
+}
+
 }  // namespace
 
 std::uint64_t signature_of(const Evidence& evidence) {
@@ -47,18 +56,6 @@ std::uint64_t signature_of(const Evidence& evidence) {
     signature.add({m.minute_utc_s, bits(m.energy_wh), bits(m.soc_frac)});
   }
   for (const CycleRecord& cycle : evidence.log) add(cycle, signature);
-  return signature.value();
-}
-
-std::uint64_t pinned_number_of(const Evidence& evidence) {
-  Signature signature;
-  RecordBytes bytes;
-  for (const CycleRecord& cycle : evidence.log) {
-    encode_record(cycle, 0, bytes);
-    for (const std::uint8_t byte : bytes) signature.add(byte);
-  }
-  signature.add(static_cast<std::int64_t>(evidence.sent));
-  signature.add(evidence.edge_exit_code);
   return signature.value();
 }
 

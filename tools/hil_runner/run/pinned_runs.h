@@ -17,9 +17,6 @@ namespace bess {
 /// Differs for runs with any difference in the evidence.
 std::uint64_t signature_of(const Evidence& evidence);
 
-/// Checksum of all fields of the edge's records, and of all bytes that it sent with their times.
-std::uint64_t pinned_number_of(const Evidence& evidence);
-
 class PinnedRuns {
  public:
   /// `path`: lines with name and number of a scenario. Throws if unreadable. With `renews`, `write`
