@@ -248,45 +248,22 @@ void create_parent(const fs::path& path) {
 /// can unpack to gigabytes.
 class GzipFile {
  public:
-  GzipFile(std::string name, std::size_t bytes_max)
-      : name_(std::move(name)), bytes_max_(bytes_max) {}
-  GzipFile(const GzipFile&) = delete;
-  GzipFile& operator=(const GzipFile&) = delete;
-  ~GzipFile() {
-    if (kind_ == Kind::kGzip) inflateEnd(&stream_);
-  }
-
-  void add(std::string_view bytes) {
-    if (kind_ == Kind::kUnknown) {
-      head_ += bytes;
-      if (head_.size() < 2) return;
-      find_kind();
-      return unpack(std::exchange(head_, {}));
-    }
-    unpack(bytes);
-  }
-  /// Content after all bytes were added.
-  std::string finish() {
-    if (kind_ == Kind::kUnknown) return head_;  // shorter than the gzip header
-    if (kind_ == Kind::kGzip && !is_member_over_) damaged("unexpected end");
-    return std::move(contents_);
-  }
-  [[nodiscard]] bool is_plain() const { return kind_ != Kind::kGzip; }
-
- private:
-  enum class Kind { kUnknown, kPlain, kGzip };
-  static constexpr std::string_view kMark = "\x1F\x8B";
-
-  void find_kind() {
-    kind_ = head_.starts_with(kMark) ? Kind::kGzip : Kind::kPlain;
+  /// `head`: the first bytes of the file, which show its kind.
+  GzipFile(std::string name, std::size_t bytes_max, std::string_view head)
+      : name_(std::move(name)), bytes_max_(bytes_max), is_gzip_(head.starts_with(kMark)) {
     constexpr int kGzipWindowBits = 15 + 16;
-    if (kind_ == Kind::kGzip && inflateInit2(&stream_, kGzipWindowBits) != Z_OK) {
+    if (is_gzip_ && inflateInit2(&stream_, kGzipWindowBits) != Z_OK) {
       fail("zlib cannot start unpacking");
     }
   }
+  GzipFile(const GzipFile&) = delete;
+  GzipFile& operator=(const GzipFile&) = delete;
+  ~GzipFile() {
+    if (is_gzip_) inflateEnd(&stream_);
+  }
 
-  void unpack(std::string_view bytes) {
-    if (kind_ == Kind::kPlain) return append(bytes);
+  void add(std::string_view bytes) {
+    if (!is_gzip_) return append(bytes);
     stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
     stream_.avail_in = static_cast<uInt>(bytes.size());
     while (stream_.avail_in > 0) {
@@ -301,6 +278,15 @@ class GzipFile {
       is_member_over_ = status == Z_STREAM_END;
     }
   }
+  /// Content after all bytes were added.
+  std::string finish() {
+    if (is_gzip_ && !is_member_over_) damaged("unexpected end");
+    return std::move(contents_);
+  }
+  [[nodiscard]] bool is_gzip() const { return is_gzip_; }
+
+ private:
+  static constexpr std::string_view kMark = "\x1F\x8B";
 
   /// gzip files may be concatenated; other bytes are an error.
   void begin_member() {
@@ -314,7 +300,7 @@ class GzipFile {
   void append(std::string_view bytes) {
     if (contents_.size() + bytes.size() > bytes_max_) {
       fail("{}: larger than {}{}: unexpected file type", name_, size_text(bytes_max_),
-           is_plain() ? "" : " once unpacked");
+           is_gzip_ ? " once unpacked" : "");
     }
     contents_ += bytes;
   }
@@ -329,13 +315,25 @@ class GzipFile {
 
   std::string name_;
   std::size_t bytes_max_;
-  Kind kind_ = Kind::kUnknown;
-  std::string head_;  ///< until the kind is known
+  bool is_gzip_;
   std::string contents_;
   std::string unpacked_ = std::string(1 << 16, '\0');
   z_stream stream_{};
   bool is_member_over_ = false;
 };
+
+/// Fills the buffer, unless the file ends before.
+std::string_view read_chunk(int fd, const fs::path& path, std::string& buffer) {
+  std::size_t size = 0;
+  while (size < buffer.size()) {
+    const ssize_t got = ::read(fd, buffer.data() + size, buffer.size() - size);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail("{}: cannot read: {}", path.string(), std::strerror(errno));
+    if (got == 0) break;
+    size += static_cast<std::size_t>(got);
+  }
+  return std::string_view(buffer).substr(0, size);
+}
 
 bool starts_with_any_case(std::string_view text, std::string_view lower) {
   return equals_ignoring_case(text.substr(0, lower.size()), lower);
@@ -363,17 +361,16 @@ std::string read_file(const fs::path& path, std::size_t bytes_max) {
   if (fstat(file.get(), &info) == 0 && S_ISDIR(info.st_mode)) {
     fail("{}: is a folder, not a file", path.string());
   }
-  GzipFile whole(path.string(), bytes_max);
-  std::string chunk(1 << 20, '\0');
-  while (true) {
-    const ssize_t got = ::read(file.get(), chunk.data(), chunk.size());
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) fail("{}: cannot read: {}", path.string(), std::strerror(errno));
-    if (got == 0) break;
-    whole.add(std::string_view(chunk).substr(0, static_cast<std::size_t>(got)));
+  std::string buffer(1 << 20, '\0');
+  std::string_view chunk = read_chunk(file.get(), path, buffer);
+  GzipFile whole(path.string(), bytes_max, chunk);
+  whole.add(chunk);
+  while (chunk.size() == buffer.size()) {
+    chunk = read_chunk(file.get(), path, buffer);
+    whole.add(chunk);
   }
   std::string contents = whole.finish();
-  if (whole.is_plain() && is_gzip_name(path) && contents.find('\0') != contents.npos) {
+  if (!whole.is_gzip() && is_gzip_name(path) && contents.find('\0') != contents.npos) {
     fail("{}: gzip by name but not by content; download or copy it again", path.string());
   }
   return contents;
