@@ -27,15 +27,6 @@ bool is_for_simulators(ScenarioEvent::EventKind kind) {
          kind == kStateLost || is_operator_event(kind);
 }
 
-using Registers = std::vector<std::uint16_t>;
-
-/// Registers by address, read or written so far: an order may be in percent of a displayed rating.
-using KnownRegisters = std::map<int, std::uint16_t>;
-
-void show(const KnownRegisters& known, Registers& registers) {
-  for (const auto& [address, value] : known) registers[static_cast<std::size_t>(address)] = value;
-}
-
 }  // namespace
 
 std::string why_not_real(const Scenario& scenario) {
@@ -107,17 +98,16 @@ std::vector<DispatchEvent> orders_on_the_bus(const std::vector<std::string>& rec
   const BatteryParameters boundless{
       .power_w_max = 1e6, .capacity_wh = 1e9, .soc_min_frac = 0, .soc_max_frac = 1};
   SimulatedBattery battery(boundless, 0.5, exchanges.front().utc_ns);
-  Registers image_holding(RegisterImage::kRegisterCount), image_input(image_holding.size());
-  RegisterImage image(map, battery, image_holding, image_input);
-  KnownRegisters holding, input;
+  std::vector<std::uint16_t> holding(RegisterImage::kRegisterCount), input(holding.size());
+  RegisterImage image(map, battery, holding, input);
+  // Registers read or written so far: an order may be in percent of a displayed rating.
+  std::map<std::uint16_t*, std::uint16_t> known;
   for (const BusExchange& exchange : exchanges) {
-    KnownRegisters& known = exchange.function == 4 ? input : holding;
-    int address = exchange.address;
-    for (const std::uint16_t value : exchange.values()) known[address++] = value;
+    std::uint16_t* place = (exchange.function == 4 ? input : holding).data() + exchange.address;
+    for (const std::uint16_t value : exchange.values()) known[place++] = value;
     if (!exchange.is_write()) continue;
     image.refresh(exchange.utc_ns);
-    show(holding, image_holding);
-    show(input, image_input);
+    for (const auto& [shown, value] : known) *shown = value;
     image.apply_write(exchange.address, exchange.count);
   }
   image.refresh(end_utc_ns);
