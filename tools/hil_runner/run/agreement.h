@@ -1,8 +1,9 @@
-// Comparisons of runs: a scenario in virtual and in wall time, by control cycle, and a scenario
-// without each of its parts.
+// Comparisons of runs: a scenario in virtual and in wall time, by control cycle, a scenario without
+// each of its parts, and with an earlier run.
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -48,5 +49,27 @@ Json agreement_json(const std::vector<Agreement>& agreements);
 /// "1560 of 1563 control cycles of 60 scenarios have equal orders in both times, 3 differ with
 /// different inputs, 0 with equal inputs"; empty if none ran in both.
 std::string agreement_line(const std::vector<Agreement>& agreements);
+
+// Signatures of runs, and a file with one for each scenario, of all records of the edge and all
+// bytes that it sent. They detect changes that no expectation covers.
+
+/// Differs for runs with any difference in the evidence.
+std::uint64_t signature_of(const Evidence& evidence);
+
+class PinnedRuns {
+ public:
+  /// `path`: lines with name and number of a scenario. Throws if unreadable. With `renews`, `write`
+  /// updates the file and there are no findings.
+  PinnedRuns(const std::string& path, bool renews);
+
+  /// Finding for a run in virtual time.
+  [[nodiscard]] std::vector<Finding> judge(const Outcome& outcome);
+  void write() const;
+
+ private:
+  std::string path_;
+  bool renews_;
+  std::map<std::string, std::string> numbers_;
+};
 
 }  // namespace bess

@@ -1,4 +1,4 @@
-#include "tools/hil_runner/run/pinned_runs.h"
+#include "tools/hil_runner/run/agreement.h"
 
 #include <fmt/core.h>
 

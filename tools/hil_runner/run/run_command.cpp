@@ -24,7 +24,6 @@
 #include "tools/hil_runner/real/real_options.h"
 #include "tools/hil_runner/run/agreement.h"
 #include "tools/hil_runner/run/hil_command.h"
-#include "tools/hil_runner/run/pinned_runs.h"
 #include "tools/hil_runner/run/report_page.h"
 #include "tools/hil_runner/run/run_scenario.h"
 #include "tools/hil_runner/scenario/rules.h"

@@ -7,7 +7,7 @@
 #include "edge/core/control/policy.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
-#include "tools/hil_runner/run/pinned_runs.h"
+#include "tools/hil_runner/run/agreement.h"
 #include "tools/hil_runner/scenario/edge_settings.h"
 #include "tools/hil_runner/scenario/publication.h"
 #include "tools/hil_runner/virtual/virtual_world.h"
