@@ -18,7 +18,6 @@
 #include <map>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "shared/battery_model.h"
 #include "shared/units_and_limits.h"

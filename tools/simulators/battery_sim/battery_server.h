@@ -5,7 +5,6 @@
 #include <modbus/modbus.h>
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>

@@ -3,7 +3,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <iterator>
 #include <limits>
 #include <string_view>
 

@@ -3,8 +3,6 @@
 // error of the loop: latency, rounding of SoC, and orders that were not followed.
 #pragma once
 
-#include <vector>
-
 #include "shared/battery_model.h"
 #include "shared/host/csv.h"
 #include "shared/host/minute_file.h"
