@@ -27,7 +27,6 @@ VirtualTime::VirtualTime(const Scenario& scenario)
   const ScenarioEvent end{.at_min = scenario.minutes, .kind = ScenarioEvent::EventKind::kEdgeStop};
   events_.push_back(end);
   std::ranges::stable_sort(events_, {}, &ScenarioEvent::at_min);
-  next_event_ns_ = time_of(events_[0]);
   current_time = this;
 }
 
@@ -40,20 +39,19 @@ std::int64_t VirtualTime::time_of(const ScenarioEvent& event) const {
 }
 
 bool VirtualTime::has_event_until(std::int64_t monotonic_ns) const {
-  return next_event_ns_ <= monotonic_ns;
+  return has_event() && time_of(events_[next_event_]) <= monotonic_ns;
 }
 
 void VirtualTime::advance_to(std::int64_t monotonic_ns) {
   throw_if_stopped();
-  while (has_event_until(monotonic_ns) || (edge_is_paused_ && next_event_ns_ != INT64_MAX)) {
-    const ScenarioEvent& event = events_[next_event_];
-    now_ns_ = std::max(now_ns_, next_event_ns_);
-    next_event_ns_ = ++next_event_ < events_.size() ? time_of(events_[next_event_]) : INT64_MAX;
+  while (has_event_until(monotonic_ns) || (edge_is_paused_ && has_event())) {
+    const ScenarioEvent& event = events_[next_event_++];
+    now_ns_ = std::max(now_ns_, time_of(event));
     apply(event);
     // A paused process receives its signals when it continues.
     if (signal_ != 0 && !edge_is_paused_) return;
   }
-  if (next_event_ns_ == INT64_MAX) edge_is_paused_ = false;  // no event is left to continue it
+  if (!has_event()) edge_is_paused_ = false;  // no event is left to continue it
   now_ns_ = std::max(now_ns_, monotonic_ns);
 }
 
@@ -117,7 +115,7 @@ bool VirtualTime::advance_to_next_start() {
   edge_runs_ = false;
   signal_ = 0;
   const std::int64_t end_ns = scenario_.end_utc_ns() - start_utc_ns_;
-  while (!edge_runs_ && has_event_until(end_ns)) advance_to(next_event_ns_);
+  while (!edge_runs_ && has_event_until(end_ns)) advance_to(time_of(events_[next_event_]));
   if (!edge_runs_) now_ns_ = std::max(now_ns_, end_ns);
   return edge_runs_;
 }

@@ -55,6 +55,7 @@ class VirtualTime {
  private:
   void apply(const ScenarioEvent& event);
   [[nodiscard]] std::int64_t time_of(const ScenarioEvent& event) const;
+  [[nodiscard]] bool has_event() const { return next_event_ < events_.size(); }
   [[nodiscard]] bool has_event_until(std::int64_t monotonic_ns) const;
 
   const Scenario& scenario_;
@@ -63,7 +64,6 @@ class VirtualTime {
   std::int64_t step_ns_ = 0;
   std::vector<ScenarioEvent> events_;  ///< of the scenario, plus the final stop
   std::size_t next_event_ = 0;
-  std::int64_t next_event_ns_ = 0;  ///< INT64_MAX: none
   int signal_ = 0;
   bool edge_runs_ = true;
   bool edge_is_paused_ = false;
