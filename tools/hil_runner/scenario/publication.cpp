@@ -120,13 +120,12 @@ std::optional<Publication::Row> Publication::newest(std::int64_t utc_ns) const {
     }
   }
   const MarketFaultSchedule& fault = scenario_.price_fault;
-  const bool is_struck = fault.fault != MarketFault::kNone && fault.every == 1 &&
-                         utc_ns >= scenario_.utc_ns_at(fault.from_s / 60) &&
-                         utc_ns < scenario_.utc_ns_at(fault.to_s / 60);
+  const std::int64_t from_ns = scenario_.utc_ns_at(fault.from_s / 60);
+  const bool is_struck =
+      fault.every == 1 && utc_ns >= from_ns && utc_ns < scenario_.utc_ns_at(fault.to_s / 60);
   if (is_struck && fault.fault == MarketFault::kNull) return newest_published(utc_ns, 1);
   if (is_struck && fault.fault == MarketFault::kStale) {
     // Older answers do not replace newer rows.
-    const std::int64_t from_ns = scenario_.utc_ns_at(fault.from_s / 60);
     return newest_published(std::max(from_ns, utc_ns - kStaleAnswerS * kNanosecondsPerSecond), 0);
   }
   return newest_published(utc_ns, 0);
