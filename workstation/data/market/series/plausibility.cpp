@@ -38,7 +38,7 @@ constexpr std::array kSentinels{-9'999.0, 9'999.0, -9'999.99, 9'999.99};
 constexpr std::array kAlsoPrices{-999.0, -99'999.0, 99'999.0};
 constexpr double kAlsoPricesShareMax = 0.01;  ///< -999 had 0.02 % of 2025
 
-/// Prices in evenly spaced rows with their properties.
+/// Prices in evenly spaced rows with their properties, and statistics of the published ones.
 struct Column {
   const char* name;
   std::span<const double> prices;
@@ -47,6 +47,11 @@ struct Column {
   const char* row;
   double usual_min_eur_per_mwh, usual_max_eur_per_mwh;
   bool (*is_sentinel)(double);
+
+  std::size_t count = 0;
+  std::optional<std::size_t> first{};
+  double size_max = 0;  ///< of |price|
+  bool is_constant = true;
 
   [[nodiscard]] std::int64_t utc_s(std::size_t i) const {
     return start_utc_s + static_cast<std::int64_t>(i) * row_s;
@@ -57,25 +62,16 @@ struct Column {
   }
 };
 
-/// Statistics of the published prices of a column.
-struct Summary {
-  std::size_t count = 0;
-  std::optional<std::size_t> first;
-  double size_max = 0;  ///< of |price|
-  bool is_constant = true;
-};
-
-Summary summary_of(const Column& column) {
-  Summary summary;
+Column with_statistics(Column column) {
   for (std::size_t m = 0; m < column.prices.size(); ++m) {
     const double price = column.prices[m];
     if (!is_published(price)) continue;
-    if (!summary.first) summary.first = m;
-    ++summary.count;
-    summary.size_max = std::max(summary.size_max, std::fabs(price));
-    summary.is_constant = summary.is_constant && price == column.prices[*summary.first];
+    if (!column.first) column.first = m;
+    ++column.count;
+    column.size_max = std::max(column.size_max, std::fabs(price));
+    column.is_constant = column.is_constant && price == column.prices[*column.first];
   }
-  return summary;
+  return column;
 }
 
 double median_size(const Column& column) {
@@ -99,280 +95,261 @@ std::pair<std::size_t, std::size_t> matches(std::span<const double> prices, Want
   return {count, first};
 }
 
-/// Checks common to minute and day-ahead prices.
-class ColumnJudge {
- protected:
+struct Findings {
+  std::vector<Finding> all;
+
   void error(std::string_view name, const Column& column, std::size_t row, std::string what) {
-    findings_.push_back({name, true, std::move(what), column.utc_s(row)});
+    all.push_back({name, true, std::move(what), column.utc_s(row)});
   }
   void warning(std::string_view name, std::int64_t utc_s, std::string what) {
-    findings_.push_back({name, false, std::move(what), utc_s});
+    all.push_back({name, false, std::move(what), utc_s});
   }
-
-  void check_dates(const Column& column) {
-    const std::size_t last = column.prices.size() - 1;
-    const bool early = column.start_utc_s < kEarliest_s;
-    if (!early && column.utc_s(last) < kLatest_s) return;
-    error("dates", column, early ? 0 : last, "the year is impossible; correct the times");
-  }
-
-  void check_constant(const Column& column) {
-    const Summary summary = summary_of(column);
-    if (summary.count < column.judged_min() || !summary.is_constant) return;
-    const double price = column.prices[*summary.first];
-    error("constant", column, *summary.first,
-          fmt::format("every {} price is {:g}, in {}; useless for training, download the "
-                      "prices again",
-                      column.name, price, counted(summary.count, column.row)));
-  }
-
-  void check_sentinels(const Column& column) {
-    const auto [count, first] = matches(column.prices, column.is_sentinel);
-    if (count == 0) return;
-    error("sentinel", column, first,
-          fmt::format("{} price {} stands for \"no price\" ({}); leave it out if your source says "
-                      "so",
-                      column.name, column.prices[first], counted(count, column.row)));
-  }
-
-  void check_unit(const Column& column) {
-    const Summary summary = summary_of(column);
-    if (summary.count < column.judged_min() || summary.is_constant) return;
-    if (summary.size_max < kUnitLowMax) {
-      error("price-unit", column, *summary.first,
-            fmt::format("no {} price exceeds {:g}: EUR/kWh? prices are in EUR/MWh, multiply by "
-                        "1000",
-                        column.name, summary.size_max));
-    }
-    if (summary.size_max < kUnitHighMin) return;
-    const double median = median_size(column);
-    if (median >= kUnitHighMin && median <= kUnitHighMax) {
-      error("price-unit", column, *summary.first,
-            fmt::format("half of the {} prices exceed {:.0f}: cents? prices are in EUR/MWh, divide "
-                        "by 100",
-                        column.name, median));
-    }
-  }
-
-  void check_range(const Column& column) {
-    const auto is_beyond = [](double price) { return std::fabs(price) > kPriceMaxEurPerMwh; };
-    const auto [count, first] = matches(column.prices, is_beyond);
-    if (count == 0) return;
-    error("price-range", column, first,
-          fmt::format("{} price {} is beyond {:.0f} EUR/MWh, more than any market allows ({}); "
-                      "correct it or leave it empty",
-                      column.name, column.prices[first], kPriceMaxEurPerMwh,
-                      counted(count, column.row)));
-  }
-
-  /// Kept: the most expensive minutes of a year are the most valuable ones.
-  void check_unusual(const Column& column) {
-    const auto is_unusual = [&column](double price) {
-      const bool is_usual =
-          price >= column.usual_min_eur_per_mwh && price <= column.usual_max_eur_per_mwh;
-      return !is_usual && std::fabs(price) <= kPriceMaxEurPerMwh;
-    };
-    const auto [count, first] = matches(column.prices, is_unusual);
-    if (count == 0) return;
-    warning("unusual-price", column.utc_s(first),
-            fmt::format("{} price {} is beyond {:.0f} .. {:.0f} EUR/MWh ({}): accepted",
-                        column.name, column.prices[first], column.usual_min_eur_per_mwh,
-                        column.usual_max_eur_per_mwh, counted(count, column.row)));
-  }
-
-  std::vector<Finding> findings_;
 };
 
-class MinuteJudge : public ColumnJudge {
- public:
-  explicit MinuteJudge(const MinuteSeries& series)
-      : series_(series),
-        settled_(column("settled", series.settled)),
-        indicative_(column("indicative", series.indicative)) {}
+/// Adds what it finds in one column.
+using Check = void (*)(const Column& column, Findings& findings);
 
-  std::vector<Finding> findings() {
-    check_dates(settled_);
-    using Check = void (MinuteJudge::*)(const Column&);
-    for (const Check check : std::initializer_list<Check>{
-             &MinuteJudge::check_row_step, &MinuteJudge::check_constant,
-             &MinuteJudge::check_sentinels, &MinuteJudge::check_frequent_sentinels,
-             &MinuteJudge::check_unit, &MinuteJudge::check_range, &MinuteJudge::check_unusual}) {
-      for_columns(check);
-    }
-    check_settled_changes();
-    for_columns(&MinuteJudge::check_frozen);
-    check_copied();
-    for_columns(&MinuteJudge::check_gaps);
-    return std::move(findings_);
+void check_dates(const Column& column, Findings& findings) {
+  const std::size_t last = column.prices.size() - 1;
+  const bool early = column.start_utc_s < kEarliest_s;
+  if (!early && column.utc_s(last) < kLatest_s) return;
+  findings.error("dates", column, early ? 0 : last, "the year is impossible; correct the times");
+}
+
+void check_constant(const Column& column, Findings& findings) {
+  if (column.count < column.judged_min() || !column.is_constant) return;
+  const double price = column.prices[*column.first];
+  findings.error("constant", column, *column.first,
+                 fmt::format("every {} price is {:g}, in {}; useless for training, download the "
+                             "prices again",
+                             column.name, price, counted(column.count, column.row)));
+}
+
+void check_sentinels(const Column& column, Findings& findings) {
+  const auto [count, first] = matches(column.prices, column.is_sentinel);
+  if (count == 0) return;
+  findings.error(
+      "sentinel", column, first,
+      fmt::format("{} price {} stands for \"no price\" ({}); leave it out if your source says "
+                  "so",
+                  column.name, column.prices[first], counted(count, column.row)));
+}
+
+void check_unit(const Column& column, Findings& findings) {
+  if (column.count < column.judged_min() || column.is_constant) return;
+  if (column.size_max < kUnitLowMax) {
+    findings.error(
+        "price-unit", column, *column.first,
+        fmt::format("no {} price exceeds {:g}: EUR/kWh? prices are in EUR/MWh, multiply by "
+                    "1000",
+                    column.name, column.size_max));
   }
+  if (column.size_max < kUnitHighMin) return;
+  const double median = median_size(column);
+  if (median >= kUnitHighMin && median <= kUnitHighMax) {
+    findings.error(
+        "price-unit", column, *column.first,
+        fmt::format("half of the {} prices exceed {:.0f}: cents? prices are in EUR/MWh, divide "
+                    "by 100",
+                    column.name, median));
+  }
+}
 
- private:
-  Column column(const char* name, const std::vector<double>& prices) const {
-    const auto is_sentinel = [](double price) {
-      return std::ranges::find(kSentinels, price) != kSentinels.end();
+void check_range(const Column& column, Findings& findings) {
+  const auto is_beyond = [](double price) { return std::fabs(price) > kPriceMaxEurPerMwh; };
+  const auto [count, first] = matches(column.prices, is_beyond);
+  if (count == 0) return;
+  findings.error(
+      "price-range", column, first,
+      fmt::format("{} price {} is beyond {:.0f} EUR/MWh, more than any market allows ({}); "
+                  "correct it or leave it empty",
+                  column.name, column.prices[first], kPriceMaxEurPerMwh,
+                  counted(count, column.row)));
+}
+
+/// Kept: the most expensive minutes of a year are the most valuable ones.
+void check_unusual(const Column& column, Findings& findings) {
+  const auto is_unusual = [&column](double price) {
+    const bool is_usual =
+        price >= column.usual_min_eur_per_mwh && price <= column.usual_max_eur_per_mwh;
+    return !is_usual && std::fabs(price) <= kPriceMaxEurPerMwh;
+  };
+  const auto [count, first] = matches(column.prices, is_unusual);
+  if (count == 0) return;
+  findings.warning("unusual-price", column.utc_s(first),
+                   fmt::format("{} price {} is beyond {:.0f} .. {:.0f} EUR/MWh ({}): accepted",
+                               column.name, column.prices[first], column.usual_min_eur_per_mwh,
+                               column.usual_max_eur_per_mwh, counted(count, column.row)));
+}
+
+/// Usual spacing of rows in minutes; 1 if there are too few.
+std::size_t usual_step(std::span<const double> prices, std::size_t first, std::size_t stride) {
+  constexpr std::size_t kStepsMin = 8;
+  std::map<std::size_t, std::size_t> count_of_step;
+  std::optional<std::size_t> before;
+  std::size_t steps = 0;
+  for (std::size_t m = first; m < prices.size(); m += stride) {
+    if (!is_published(prices[m])) continue;
+    if (before) ++count_of_step[m - *before];
+    steps += before ? 1 : 0;
+    before = m;
+  }
+  if (steps < kStepsMin) return stride;
+  return std::ranges::max_element(count_of_step, {}, [](const auto& step) { return step.second; })
+      ->first;
+}
+
+void check_row_step(const Column& column, Findings& findings) {
+  if (!column.first) return;
+  const std::size_t step = usual_step(column.prices, 0, 1);
+  if (step > 1) {
+    findings.error(
+        "row-step", column, *column.first,
+        fmt::format("{} prices come every {} minutes, but a minute file has one per minute; "
+                    "'bess-train prices reconstruct --quarter-hours' makes minutes from "
+                    "quarter-hours",
+                    column.name, step));
+    return;
+  }
+  const std::size_t quarter_hour = kSecondsPerQuarterHour / 60;
+  const std::size_t begin = static_cast<std::size_t>(
+      (kSecondsPerQuarterHour - column.start_utc_s % kSecondsPerQuarterHour) %
+      kSecondsPerQuarterHour / 60);
+  const std::size_t rows_apart = usual_step(column.prices, begin, quarter_hour);
+  if (rows_apart > quarter_hour) {
+    findings.error(
+        "row-step", column, *column.first,
+        fmt::format("{} prices come every {} minutes, but the market settles every 15; get "
+                    "quarter-hours",
+                    column.name, rows_apart));
+  }
+}
+
+void check_frequent_sentinels(const Column& column, Findings& findings) {
+  if (column.count < column.judged_min()) return;
+  for (const double wanted : kAlsoPrices) {
+    const auto [count, first] =
+        matches(column.prices, [wanted](double price) { return price == wanted; });
+    const double share = static_cast<double>(count) / static_cast<double>(column.count);
+    if (share <= kAlsoPricesShareMax) continue;
+    findings.warning(
+        "sentinel", column.utc_s(first),
+        fmt::format("{} price {} in {:.1f} % of the minutes: is it what your source writes "
+                    "for \"no price\"? then leave the field empty",
+                    column.name, wanted, 100 * share));
+  }
+}
+
+/// The settled price is constant in its quarter-hour; if the other column is constant instead,
+/// the two are swapped.
+void check_settled_changes(const MinuteSeries& series, const Column& settled, Findings& findings) {
+  std::size_t changing = 0;
+  std::size_t first = 0;
+  std::size_t still_indicative = 0;
+  for (std::size_t m = 1; m < series.size(); ++m) {
+    const bool same = series.utc_s(m) % kSecondsPerQuarterHour != 0;
+    const auto changes = [&](const std::vector<double>& prices) {
+      return is_published(prices[m - 1]) && is_published(prices[m]) && prices[m] != prices[m - 1];
     };
-    return {name,
-            prices,
-            series_.start_utc_s,
-            60,
-            "minute",
-            -kUnusualPriceMaxEurPerMwh,
-            kUnusualPriceMaxEurPerMwh,
-            is_sentinel};
+    if (!same || !changes(series.settled)) continue;
+    if (changing++ == 0) first = m;
+    still_indicative += changes(series.indicative) ? 0 : 1;
   }
-  void for_columns(void (MinuteJudge::*check)(const Column&)) {
-    (this->*check)(settled_);
-    (this->*check)(indicative_);
-  }
+  if (changing == 0) return;
+  const bool swapped = changing > 100 && still_indicative * 10 > changing * 9;
+  findings.error(
+      "settled-changes", settled, first,
+      fmt::format("the settled price changes within its quarter-hour, from {:g} to {:g} ({}); {}",
+                  series.settled[first - 1], series.settled[first], counted(changing, "change"),
+                  swapped ? "the indicative price does not: are the two columns swapped?"
+                          : "a quarter-hour has one settled price, correct the rows"));
+}
 
-  /// Usual spacing of rows in minutes; 1 if there are too few.
-  static std::size_t usual_step(std::span<const double> prices, std::size_t first,
-                                std::size_t stride) {
-    constexpr std::size_t kStepsMin = 8;
-    std::map<std::size_t, std::size_t> count_of_step;
-    std::optional<std::size_t> before;
-    std::size_t steps = 0;
-    for (std::size_t m = first; m < prices.size(); m += stride) {
-      if (!is_published(prices[m])) continue;
-      if (before) ++count_of_step[m - *before];
-      steps += before ? 1 : 0;
-      before = m;
-    }
-    if (steps < kStepsMin) return stride;
-    return std::ranges::max_element(count_of_step, {}, [](const auto& step) { return step.second; })
-        ->first;
-  }
-
-  void check_row_step(const Column& column) {
-    const std::optional<std::size_t> first_price = summary_of(column).first;
-    if (!first_price) return;
-    const std::size_t first = *first_price;
-    const std::size_t step = usual_step(column.prices, 0, 1);
-    if (step > 1) {
-      error("row-step", column, first,
-            fmt::format("{} prices come every {} minutes, but a minute file has one per minute; "
-                        "'bess-train prices reconstruct --quarter-hours' makes minutes from "
-                        "quarter-hours",
-                        column.name, step));
-      return;
-    }
-    const std::size_t quarter_hour = kSecondsPerQuarterHour / 60;
-    const std::size_t begin = static_cast<std::size_t>(
-        (kSecondsPerQuarterHour - series_.start_utc_s % kSecondsPerQuarterHour) %
-        kSecondsPerQuarterHour / 60);
-    const std::size_t rows_apart = usual_step(column.prices, begin, quarter_hour);
-    if (rows_apart > quarter_hour) {
-      error("row-step", column, first,
-            fmt::format("{} prices come every {} minutes, but the market settles every 15; get "
-                        "quarter-hours",
-                        column.name, rows_apart));
+void check_frozen(const Column& column, Findings& findings) {
+  if (column.is_constant) return;  // already reported
+  std::size_t longest = 0;
+  std::size_t start_of_longest = 0;
+  std::size_t start = 0;
+  for (std::size_t m = 0; m < column.prices.size(); ++m) {
+    if (m == 0 || column.prices[m] != column.prices[m - 1]) start = m;  // NaN differs from NaN
+    if (m + 1 - start > longest) {
+      longest = m + 1 - start;
+      start_of_longest = start;
     }
   }
+  if (longest < column.judged_min()) return;
+  findings.warning("frozen", column.utc_s(start_of_longest),
+                   fmt::format("the {} price stays at {:g} for {} minutes; did the source stop?",
+                               column.name, column.prices[start_of_longest], longest));
+}
 
-  void check_frequent_sentinels(const Column& column) {
-    const std::size_t prices = summary_of(column).count;
-    if (prices < column.judged_min()) return;
-    for (const double wanted : kAlsoPrices) {
-      const auto [count, first] =
-          matches(column.prices, [wanted](double price) { return price == wanted; });
-      const double share = static_cast<double>(count) / static_cast<double>(prices);
-      if (share <= kAlsoPricesShareMax) continue;
-      warning("sentinel", series_.utc_s(first),
-              fmt::format("{} price {} in {:.1f} % of the minutes: is it what your source writes "
-                          "for \"no price\"? then leave the field empty",
-                          column.name, wanted, 100 * share));
-    }
+void check_copied(const Column& settled, const Column& indicative, Findings& findings) {
+  std::size_t both = 0;
+  for (std::size_t m = 0; m < settled.prices.size(); ++m) {
+    if (!is_published(indicative.prices[m]) || !is_published(settled.prices[m])) continue;
+    if (indicative.prices[m] != settled.prices[m]) return;
+    ++both;
   }
+  if (both < settled.judged_min() || settled.is_constant) return;
+  findings.warning(
+      "copied-column", settled.start_utc_s,
+      "indicative and settled price are equal in every minute: a policy would see the price "
+      "that it is paid, and its results would be too high");
+}
 
-  /// The settled price is constant in its quarter-hour; if the other column is constant instead,
-  /// the two are swapped.
-  void check_settled_changes() {
-    std::size_t changing = 0;
-    std::size_t first = 0;
-    std::size_t still_indicative = 0;
-    for (std::size_t m = 1; m < series_.size(); ++m) {
-      const bool same = series_.utc_s(m) % kSecondsPerQuarterHour != 0;
-      const auto changes = [&](const std::vector<double>& prices) {
-        return is_published(prices[m - 1]) && is_published(prices[m]) && prices[m] != prices[m - 1];
-      };
-      if (!same || !changes(series_.settled)) continue;
-      if (changing++ == 0) first = m;
-      still_indicative += changes(series_.indicative) ? 0 : 1;
-    }
-    if (changing == 0) return;
-    const bool swapped = changing > 100 && still_indicative * 10 > changing * 9;
-    error(
-        "settled-changes", settled_, first,
-        fmt::format("the settled price changes within its quarter-hour, from {:g} to {:g} ({}); {}",
-                    series_.settled[first - 1], series_.settled[first], counted(changing, "change"),
-                    swapped ? "the indicative price does not: are the two columns swapped?"
-                            : "a quarter-hour has one settled price, correct the rows"));
-  }
+/// Time before the first and after the last price is not a gap.
+void check_gaps(const Column& column, Findings& findings) {
+  if (column.count == 0) return;
+  std::vector<Gap> gaps = gaps_in(column.prices, column.start_utc_s, 60);
+  std::erase_if(gaps, [&column](const Gap& gap) {
+    return gap.from_utc_s == column.start_utc_s ||
+           gap.until_utc_s == column.utc_s(column.prices.size());
+  });
+  if (gaps.empty()) return;
+  const auto length_min = [](const Gap& gap) { return (gap.until_utc_s - gap.from_utc_s) / 60; };
+  const Gap largest = *std::ranges::max_element(gaps, {}, length_min);
+  const std::int64_t missing_min = minutes_in(gaps);
+  const double share = static_cast<double>(missing_min) / static_cast<double>(column.prices.size());
+  if (length_min(largest) < kGapWorthNaming_min && share <= kGapShareMax) return;
+  findings.warning(
+      "gaps", largest.until_utc_s,
+      fmt::format("{} price: {}, {} of {} minutes missing; the largest, {} minutes, from {} "
+                  "to {}",
+                  column.name, counted(gaps.size(), "gap"), missing_min, column.prices.size(),
+                  length_min(largest), utc_text(largest.from_utc_s).view(),
+                  utc_text(largest.until_utc_s).view()));
+}
 
-  void check_frozen(const Column& column) {
-    if (summary_of(column).is_constant) return;  // already reported
-    std::size_t longest = 0;
-    std::size_t start_of_longest = 0;
-    std::size_t start = 0;
-    for (std::size_t m = 0; m < column.prices.size(); ++m) {
-      if (m == 0 || column.prices[m] != column.prices[m - 1]) start = m;  // NaN differs from NaN
-      if (m + 1 - start > longest) {
-        longest = m + 1 - start;
-        start_of_longest = start;
-      }
-    }
-    if (longest < column.judged_min()) return;
-    warning("frozen", series_.utc_s(start_of_longest),
-            fmt::format("the {} price stays at {:g} for {} minutes; did the source stop?",
-                        column.name, column.prices[start_of_longest], longest));
-  }
-
-  void check_copied() {
-    std::size_t both = 0;
-    for (std::size_t m = 0; m < series_.size(); ++m) {
-      if (!is_published(series_.indicative[m]) || !is_published(series_.settled[m])) continue;
-      if (series_.indicative[m] != series_.settled[m]) return;
-      ++both;
-    }
-    if (both < settled_.judged_min() || summary_of(settled_).is_constant) return;
-    warning("copied-column", series_.start_utc_s,
-            "indicative and settled price are equal in every minute: a policy would see the price "
-            "that it is paid, and its results would be too high");
-  }
-
-  /// Time before the first and after the last price is not a gap.
-  void check_gaps(const Column& column) {
-    const Summary summary = summary_of(column);
-    if (summary.count == 0) return;
-    std::vector<Gap> gaps = gaps_in(column.prices, series_.start_utc_s, 60);
-    std::erase_if(gaps, [this](const Gap& gap) {
-      return gap.from_utc_s == series_.start_utc_s ||
-             gap.until_utc_s == series_.utc_s(series_.size());
-    });
-    if (gaps.empty()) return;
-    const auto length_min = [](const Gap& gap) { return (gap.until_utc_s - gap.from_utc_s) / 60; };
-    const Gap largest = *std::ranges::max_element(gaps, {}, length_min);
-    const std::int64_t missing_min = minutes_in(gaps);
-    const double share = static_cast<double>(missing_min) / static_cast<double>(series_.size());
-    if (length_min(largest) < kGapWorthNaming_min && share <= kGapShareMax) return;
-    warning("gaps", largest.until_utc_s,
-            fmt::format("{} price: {}, {} of {} minutes missing; the largest, {} minutes, from {} "
-                        "to {}",
-                        column.name, counted(gaps.size(), "gap"), missing_min, series_.size(),
-                        length_min(largest), utc_text(largest.from_utc_s).view(),
-                        utc_text(largest.until_utc_s).view()));
-  }
-
-  const MinuteSeries& series_;
-  Column settled_;
-  Column indicative_;
-};
+Column minute_column(const char* name, const std::vector<double>& prices,
+                     std::int64_t start_utc_s) {
+  const auto is_sentinel = [](double price) {
+    return std::ranges::find(kSentinels, price) != kSentinels.end();
+  };
+  return with_statistics({name, prices, start_utc_s, 60, "minute", -kUnusualPriceMaxEurPerMwh,
+                          kUnusualPriceMaxEurPerMwh, is_sentinel});
+}
 
 }  // namespace
 
 std::vector<Finding> implausible(const MinuteSeries& series) {
   if (series.size() == 0) return {};
-  return MinuteJudge(series).findings();
+  const Column settled = minute_column("settled", series.settled, series.start_utc_s);
+  const Column indicative = minute_column("indicative", series.indicative, series.start_utc_s);
+  Findings findings;
+  const auto check_both = [&](Check check) {
+    check(settled, findings);
+    check(indicative, findings);
+  };
+  check_dates(settled, findings);
+  for (const Check check : {check_row_step, check_constant, check_sentinels,
+                            check_frequent_sentinels, check_unit, check_range, check_unusual}) {
+    check_both(check);
+  }
+  check_settled_changes(series, settled, findings);
+  check_both(check_frozen);
+  check_copied(settled, indicative, findings);
+  check_both(check_gaps);
+  return std::move(findings.all);
 }
 
 std::vector<Finding> implausible_end(std::string_view text, const MinuteSeries& series) {
@@ -396,70 +373,56 @@ constexpr double kCorrelationMore = 0.02;              ///< of a shift
 /// Limits of the coupled auction, raised in steps when reached (harmonised clearing prices).
 constexpr double kAuctionMinEurPerMwh = -500, kAuctionMaxEurPerMwh = 5'000;
 
-class DayAheadJudge : public ColumnJudge {
- public:
-  explicit DayAheadJudge(const DayAheadSeries& series)
-      : series_(series), column_{"day-ahead",          series.eur_per_mwh,
-                                 series.start_utc_s,   kSecondsPerQuarterHour,
-                                 "quarter-hour",       kAuctionMinEurPerMwh,
-                                 kAuctionMaxEurPerMwh, is_day_ahead_sentinel} {}
-
-  std::vector<Finding> findings() {
-    check_dates(column_);
-    check_sentinels(column_);
-    check_range(column_);
-    check_unusual(column_);
-    check_constant(column_);
-    check_unit(column_);
-    check_days();
-    return std::move(findings_);
+/// Whether the day [from, from + 96) repeats the previous day's prices; constant days do not count.
+bool repeats_day_before(const DayAheadSeries& series, std::size_t from) {
+  bool moves = false;
+  for (std::size_t q = from; q < from + kDayOfPrices; ++q) {
+    const double price = series.eur_per_mwh[q];
+    if (!(price == series.eur_per_mwh[q - kDayOfPrices])) return false;  // a price is missing
+    moves = moves || price != series.eur_per_mwh[from];
   }
+  return moves;
+}
 
- private:
-  /// Whether the day [from, from + 96) repeats the previous day's prices; constant days do not
-  /// count.
-  [[nodiscard]] bool repeats_day_before(std::size_t from) const {
-    bool moves = false;
-    for (std::size_t q = from; q < from + kDayOfPrices; ++q) {
-      const double price = series_.eur_per_mwh[q];
-      if (!(price == series_.eur_per_mwh[q - kDayOfPrices])) return false;  // a price is missing
-      moves = moves || price != series_.eur_per_mwh[from];
-    }
-    return moves;
+void check_days(const DayAheadSeries& series, const Column& column, Findings& findings) {
+  const std::vector<IncompleteDay> incomplete = incomplete_days(series);
+  if (!incomplete.empty()) {
+    const IncompleteDay& day = incomplete.front();
+    findings.warning(
+        "gaps", series.start_utc_s,
+        fmt::format("{} with fewer day-ahead prices than quarter-hours, first {}: {} of {}",
+                    counted(incomplete.size(), "day"), day.date, day.prices, day.quarter_hours));
   }
-
-  void check_days() {
-    const std::vector<IncompleteDay> incomplete = incomplete_days(series_);
-    if (!incomplete.empty()) {
-      const IncompleteDay& day = incomplete.front();
-      warning(
-          "gaps", series_.start_utc_s,
-          fmt::format("{} with fewer day-ahead prices than quarter-hours, first {}: {} of {}",
-                      counted(incomplete.size(), "day"), day.date, day.prices, day.quarter_hours));
-    }
-    const std::int64_t into_day_s =
-        series_.start_utc_s - local_midnight_utc_s(local_date_of(series_.start_utc_s));
-    const auto before =
-        static_cast<std::size_t>((kSecondsPerDay - into_day_s) / kSecondsPerQuarterHour) %
-        kDayOfPrices;
-    for (std::size_t q = before + kDayOfPrices; q + kDayOfPrices <= series_.size(); ++q) {
-      const bool midnight = local_minute_of(series_.utc_s(q)).minute_of_day == 0;
-      if (!midnight || !repeats_day_before(q)) continue;
-      return error("repeated-day", column_, q,
-                   fmt::format("the day-ahead prices of {} are those of the previous day: an old "
-                               "answer? download the day again",
-                               format_local_date(local_date_of(series_.utc_s(q)))));
-    }
+  const std::int64_t into_day_s =
+      series.start_utc_s - local_midnight_utc_s(local_date_of(series.start_utc_s));
+  const auto before =
+      static_cast<std::size_t>((kSecondsPerDay - into_day_s) / kSecondsPerQuarterHour) %
+      kDayOfPrices;
+  for (std::size_t q = before + kDayOfPrices; q + kDayOfPrices <= series.size(); ++q) {
+    const bool midnight = local_minute_of(series.utc_s(q)).minute_of_day == 0;
+    if (!midnight || !repeats_day_before(series, q)) continue;
+    return findings.error(
+        "repeated-day", column, q,
+        fmt::format("the day-ahead prices of {} are those of the previous day: an old "
+                    "answer? download the day again",
+                    format_local_date(local_date_of(series.utc_s(q)))));
   }
-
-  const DayAheadSeries& series_;
-  Column column_;
-};
+}
 
 }  // namespace
 
 std::vector<Finding> implausible_day_ahead(const DayAheadSeries& series) {
-  return series.size() == 0 ? std::vector<Finding>{} : DayAheadJudge(series).findings();
+  if (series.size() == 0) return {};
+  const Column column = with_statistics(
+      {"day-ahead", series.eur_per_mwh, series.start_utc_s, kSecondsPerQuarterHour, "quarter-hour",
+       kAuctionMinEurPerMwh, kAuctionMaxEurPerMwh, is_day_ahead_sentinel});
+  Findings findings;
+  for (const Check check :
+       {check_dates, check_sentinels, check_range, check_unusual, check_constant, check_unit}) {
+    check(column, findings);
+  }
+  check_days(series, column, findings);
+  return std::move(findings.all);
 }
 
 namespace {
