@@ -451,22 +451,13 @@ MarketRows parse_minute_file_rows(std::string_view text, std::string_view name) 
   return rows;
 }
 
-/// Not an overload: in jointly compiled files {kElia} would select this one.
-const char* words_for(MarketSource source) {
-  switch (source) {
-    case MarketSource::kElia:
-      return "Elia, opendata.elia.be, CC BY 4.0 (https://creativecommons.org/licenses/by/4.0/)";
-    case MarketSource::kEntsoe:
-      return "ENTSO-E Transparency Platform, transparency.entsoe.eu, by its terms of use";
-    case MarketSource::kSimulated:
-      return "a simulated market of bess-train, not real";
-    case MarketSource::kDrawn:
-      return "minutes by bess-train prices reconstruct: drawn, not real";
-    case MarketSource::kUnknown:
-      break;
-  }
-  return "a file that does not name its source";
-}
+/// By MarketSource.
+constexpr const char* kSourceWords[] = {
+    "Elia, opendata.elia.be, CC BY 4.0 (https://creativecommons.org/licenses/by/4.0/)",
+    "ENTSO-E Transparency Platform, transparency.entsoe.eu, by its terms of use",
+    "a simulated market of bess-train, not real",
+    "minutes by bess-train prices reconstruct: drawn, not real",
+    "a file that does not name its source"};
 
 }  // namespace
 
@@ -524,7 +515,9 @@ std::string file_names(const std::vector<std::string>& paths) {
 
 std::string attribution_of(const std::set<MarketSource>& sources) {
   std::vector<std::string> names;
-  for (const MarketSource source : sources) names.emplace_back(words_for(source));
+  for (const MarketSource source : sources) {
+    names.emplace_back(kSourceWords[static_cast<std::size_t>(source)]);
+  }
   return fmt::format("Source: {}", fmt::join(names, "; "));
 }
 
