@@ -117,13 +117,7 @@ void MarketRowBuilder::set_text(MarketField field, std::string_view text) {
 
 void MarketRowBuilder::set_number(MarketField field, double value) {
   if (!std::isfinite(value)) fail("{}: a number is out of range; correct the row", place_);
-  if (field == kSystemImbalance) values_.system_imbalance_mw = value;
-  if (field == kAlpha) values_.alpha_eur_per_mwh = value;
-  if (field == kMarginalIncremental) values_.marginal_incremental_eur_per_mwh = value;
-  if (field == kMarginalDecremental) values_.marginal_decremental_eur_per_mwh = value;
-  if (field == kPrice) values_.price_eur_per_mwh = value;
-  if (field == kPositivePrice) parties_.long_eur_per_mwh = value;
-  if (field == kNegativePrice) parties_.short_eur_per_mwh = value;
+  numbers_[static_cast<std::size_t>(field)] = value;
 }
 
 bool MarketRowBuilder::is_minute() const {
@@ -141,16 +135,19 @@ void MarketRowBuilder::finish(MarketRows& rows) const {
     fail("{}: {} does not start a {}; correct the time", place_, utc_text(*utc_s_).view(),
          minute ? "minute" : "quarter-hour");
   }
-  const bool has_price = is_published(values_.price_eur_per_mwh);
-  const double price = has_price ? values_.price_eur_per_mwh : parties_.single();
+  const auto number = [this](MarketField field) {
+    return numbers_[static_cast<std::size_t>(field)];
+  };
+  const PartyPrices parties{number(kPositivePrice), number(kNegativePrice)};
+  const bool has_price = is_published(number(kPrice));
+  const double price = has_price ? number(kPrice) : parties.single();
   if (minute) {
     rows.minutes.push_back({*utc_s_, price});
   } else {
-    rows.quarter_hours.push_back(values_);
-    rows.quarter_hours.back().utc_s = *utc_s_;
-    rows.quarter_hours.back().price_eur_per_mwh = price;
+    rows.quarter_hours.push_back({*utc_s_, price, number(kSystemImbalance), number(kAlpha),
+                                  number(kMarginalIncremental), number(kMarginalDecremental)});
   }
-  if (!has_price && parties_.are_different()) {
+  if (!has_price && parties.are_different()) {
     (minute ? rows.dual_priced_minutes : rows.dual_priced_quarter_hours).insert(*utc_s_);
   }
   // All Elia datasets have the resolution code, tidy files never.

@@ -5,6 +5,7 @@
 // Quality flags are ignored: according to Elia DataIssue is set on far too many usable rows.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <set>
@@ -82,6 +83,7 @@ enum class MarketField {
   kPositivePrice,  ///< long party; until May 2024 there are two prices
   kNegativePrice,  ///< short party
 };
+inline constexpr std::size_t kMarketFieldCount = 10;
 
 /// A name without case, spaces and punctuation.
 std::string plain_name(std::string_view label);
@@ -97,7 +99,9 @@ class MarketRowBuilder {
   /// `place` names the row in messages, e.g. "prices.csv:17"; it must outlive the builder.
   /// `has_decimal_commas`: "-30,258" is a number, as with semicolons as separators.
   explicit MarketRowBuilder(std::string_view place, bool has_decimal_commas = false)
-      : place_(place), has_decimal_commas_(has_decimal_commas) {}
+      : place_(place), has_decimal_commas_(has_decimal_commas) {
+    numbers_.fill(kNotPublished);
+  }
 
   void set_text(MarketField field, std::string_view text);
   void set_number(MarketField field, double value);
@@ -109,8 +113,7 @@ class MarketRowBuilder {
   [[nodiscard]] bool is_minute() const;
 
   std::string_view place_;
-  QuarterHour values_;
-  PartyPrices parties_;
+  std::array<double, kMarketFieldCount> numbers_;  ///< by MarketField
   std::optional<std::int64_t> utc_s_;
   std::string_view resolution_;
   bool has_quarter_hour_ = false;
