@@ -195,11 +195,6 @@ struct Point {
   Category category = kBoth;
 };
 
-struct Period {
-  EntsoePeriod time;
-  std::vector<Point> points{};  ///< by position
-};
-
 Point point_of(const EntsoeElement& element, const EntsoePeriod& period) {
   Point point{.position = entsoe_position_of(element, period)};
   const EntsoeElement amount = element.child("imbalance_Price.amount");
@@ -207,16 +202,6 @@ Point point_of(const EntsoeElement& element, const EntsoePeriod& period) {
   const std::string_view category = element.child("imbalance_Price.category").text();
   point.category = category == "A04" ? kLong : category == "A05" ? kShort : kBoth;
   return point;
-}
-
-Period period_of(const EntsoeElement& element) {
-  Period period{entsoe_period_of(element)};
-  for (const EntsoeElement& point : element.children("Point")) {
-    period.points.push_back(point_of(point, period.time));
-  }
-  // Some documents list all long prices, then all short ones.
-  std::ranges::stable_sort(period.points, {}, &Point::position);
-  return period;
 }
 
 void set_price(const Point& point, PartyPrices& prices) {
@@ -228,44 +213,30 @@ using QuarterHourPrices = std::map<std::int64_t, PartyPrices>;  ///< by start, U
 
 /// A price of a longer interval applies to each of its quarter-hours; with repeated points it
 /// applies until the next of its own category.
-void add_period(const Period& period, bool repeats, QuarterHourPrices& prices) {
+void add_period(const EntsoeElement& element, bool repeats, QuarterHourPrices& prices) {
+  const EntsoePeriod period = entsoe_period_of(element);
+  std::vector<Point> points;
+  for (const EntsoeElement& point : element.children("Point")) {
+    points.push_back(point_of(point, period));
+  }
+  // Some documents list all long prices, then all short ones.
+  std::ranges::stable_sort(points, {}, &Point::position);
   std::array<std::optional<Point>, kCategoryCount> current;
-  auto next = period.points.begin();
-  for (std::int64_t position = 1; position <= period.time.positions; ++position) {
+  auto next = points.begin();
+  for (std::int64_t position = 1; position <= period.positions; ++position) {
     if (!repeats) current = {};
-    for (; next != period.points.end() && next->position == position; ++next) {
+    for (; next != points.end() && next->position == position; ++next) {
       current[next->category] = *next;
     }
-    const std::int64_t end_utc_s = period.time.start_utc_s + position * period.time.step_s;
+    const std::int64_t end_utc_s = period.start_utc_s + position * period.step_s;
     for (const std::optional<Point>& point : current) {
       if (!point) continue;
-      for (std::int64_t utc_s = end_utc_s - period.time.step_s; utc_s < end_utc_s;
+      for (std::int64_t utc_s = end_utc_s - period.step_s; utc_s < end_utc_s;
            utc_s += kSecondsPerQuarterHour) {
         set_price(*point, prices[utc_s]);
       }
     }
   }
-}
-
-void add_series(const EntsoeElement& series, QuarterHourPrices& prices) {
-  require_entsoe_units(series);
-  const bool repeats = series.child("curveType").text() == "A03";
-  for (const EntsoeElement& period : series.children("Period")) {
-    add_period(period_of(period), repeats, prices);
-  }
-}
-
-QuarterHourPrices prices_of(const EntsoeSource& source, std::string& zone) {
-  pugi::xml_document document;
-  load_entsoe_document(document, source, "Balancing_MarketDocument", "balancing document (A85)");
-  QuarterHourPrices prices;
-  for (const pugi::xml_node& node : document) {
-    const EntsoeElement root{node, source};
-    set_entsoe_zone(root, root.child("area_Domain.mRID").text(), zone);
-    for (const EntsoeElement& series : root.children("TimeSeries")) add_series(series, prices);
-  }
-  if (prices.empty()) fail("{}: has no imbalance prices; choose other days", source.name);
-  return prices;
 }
 
 }  // namespace
@@ -276,14 +247,27 @@ bool looks_like_xml(std::string_view text) {
 }
 
 MarketRows parse_entsoe_xml(std::string_view text, std::string_view name) {
+  const EntsoeSource source{text, name};
+  pugi::xml_document document;
+  load_entsoe_document(document, source, "Balancing_MarketDocument", "balancing document (A85)");
   MarketRows rows;
   rows.sources = {MarketSource::kEntsoe};
-  for (const auto& [utc_s, prices] : prices_of({text, name}, rows.zone)) {
-    QuarterHour quarter_hour;
-    quarter_hour.utc_s = utc_s;
-    quarter_hour.price_eur_per_mwh = prices.single();
-    if (prices.are_different()) rows.dual_priced_quarter_hours.insert(utc_s);
-    rows.quarter_hours.push_back(quarter_hour);
+  QuarterHourPrices prices;
+  for (const pugi::xml_node& node : document) {
+    const EntsoeElement root{node, source};
+    set_entsoe_zone(root, root.child("area_Domain.mRID").text(), rows.zone);
+    for (const EntsoeElement& series : root.children("TimeSeries")) {
+      require_entsoe_units(series);
+      const bool repeats = series.child("curveType").text() == "A03";
+      for (const EntsoeElement& period : series.children("Period")) {
+        add_period(period, repeats, prices);
+      }
+    }
+  }
+  if (prices.empty()) fail("{}: has no imbalance prices; choose other days", name);
+  for (const auto& [utc_s, of_parties] : prices) {
+    if (of_parties.are_different()) rows.dual_priced_quarter_hours.insert(utc_s);
+    rows.quarter_hours.push_back({utc_s, of_parties.single()});
   }
   return rows;
 }
