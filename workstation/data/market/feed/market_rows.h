@@ -113,7 +113,7 @@ class MarketRowBuilder {
   [[nodiscard]] bool is_minute() const;
 
   std::string_view place_;
-  std::array<double, kMarketFieldCount> numbers_;  ///< by MarketField
+  std::array<double, kMarketFieldCount> numbers_{};  ///< by MarketField
   std::optional<std::int64_t> utc_s_;
   std::string_view resolution_;
   bool has_quarter_hour_ = false;
