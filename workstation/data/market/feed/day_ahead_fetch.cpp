@@ -56,10 +56,7 @@ std::optional<JoinedDayAhead> fetch_day_ahead(const DayAheadRequest& request,
         fmt::format("{}/price?bzn={}&start={}&end={}", request.base_url, url_encoded(request.zone),
                     format_local_date(from), format_local_date(to));
     std::string answer;
-    const auto read = [&answer](HttpOutcome outcome) {
-      answer = std::move(outcome.body);
-      return outcome;
-    };
+    const auto read = [&answer](std::string body) { answer = std::move(body); };
     const RetriedRequest retried{url, "day-ahead",
                                  "day-ahead prices from " + host_of(request.base_url), "try again",
                                  "then try again"};

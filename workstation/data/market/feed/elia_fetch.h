@@ -147,12 +147,12 @@ struct RetriedRequest {
   std::string again_then;  ///< remedy after a wait
 };
 
-/// Requests until `read` takes an answer; false if interrupted. `read` returns its argument, or
-/// kRefused for an answer that is final, or kTransient for an unreadable one, which is requested
+/// Requests until `read` takes the body of an answer; false if interrupted. `read` throws
+/// NotMarketData for an answer that is final, or UserError for an unreadable one, which is requested
 /// again, since a proxy may have changed it. Throws UserError after the last attempt.
 bool get_with_retries(const RetriedRequest& request, const RetryPolicy& retry, const Sleep& sleep,
                       const std::atomic<bool>& interrupted,
-                      const std::function<HttpOutcome(HttpOutcome)>& read);
+                      const std::function<void(std::string body)>& read);
 
 /// "opendata.elia.be" of a URL.
 std::string host_of(const std::string& url);

@@ -138,16 +138,9 @@ double next_wait_s(const RetriedRequest& request, const RetryPolicy& retry,
 std::optional<WindowDownload> get_page(const FetchRequest& request, const FetchWindow& window,
                                        const std::atomic<bool>& interrupted) {
   WindowDownload download;
-  const auto read = [&](HttpOutcome outcome) -> HttpOutcome {
-    try {
-      download.rows = rows_in_window(outcome.body, window.dataset, window, request.now_utc_s);
-      download.text = std::move(outcome.body);
-      return outcome;
-    } catch (const NotMarketData& error) {  // of another dataset
-      return {Kind::kRefused, {}, error.what(), {}};
-    } catch (const UserError& error) {
-      return {Kind::kTransient, {}, fmt::format("cannot read the answer: {}", error.what()), {}};
-    }
+  const auto read = [&](std::string body) {
+    download.rows = rows_in_window(body, window.dataset, window, request.now_utc_s);
+    download.text = std::move(body);
   };
   const RetriedRequest retried{rows_url(request.base_url, window), window.dataset,
                                describe_window(request, window),
@@ -329,16 +322,23 @@ std::optional<WindowDownload> download_window(const FetchRequest& request,
 
 bool get_with_retries(const RetriedRequest& request, const RetryPolicy& retry, const Sleep& sleep,
                       const std::atomic<bool>& interrupted,
-                      const std::function<HttpOutcome(HttpOutcome)>& read) {
+                      const std::function<void(std::string body)>& read) {
   for (Attempts attempts; !interrupted;) {
     ++attempts.all;
     HttpOutcome outcome = http_get(request.url, interrupted, retry.limits);
     attempts.slow += outcome.kind == Kind::kSlow ? 1 : 0;
     if (outcome.kind == Kind::kDone) {
-      outcome = read(std::move(outcome));
-      attempts.unreadable += outcome.kind == Kind::kTransient ? 1 : 0;
+      try {
+        read(std::move(outcome.body));
+        return true;
+      } catch (const NotMarketData& error) {  // of another dataset
+        outcome = {Kind::kRefused, {}, error.what(), {}};
+      } catch (const UserError& error) {
+        ++attempts.unreadable;
+        outcome = {
+            Kind::kTransient, {}, fmt::format("cannot read the answer: {}", error.what()), {}};
+      }
     }
-    if (outcome.kind == Kind::kDone) return true;
     if (outcome.kind == Kind::kInterrupted) break;
     const double wait_s = next_wait_s(request, retry, attempts, outcome);
     fmt::print(stderr, "{}: {}; next attempt in {:.0f} s\n", request.label, outcome.reason, wait_s);
