@@ -47,14 +47,13 @@ void take_steps(const std::string& path, BatteryParameters& battery) {
 /// A complete configuration: [battery] with what was fitted, then every other key that `config`
 /// changes, so that costs, wear and limits are not lost.
 std::string toml_of(const BatteryFit& fit, const RunConfig& config) {
-  BatteryParameters battery = fit.applied_to(config.battery);
-  const auto found = fit.found();
+  BatteryParameters battery = with_fit(config.battery, fit);
   std::string section = "[battery]";
   std::string text = section + "\n";
   for (const BatteryKey& key : kBatteryKeys) {
     text += fmt::format("{} = {:.6g}", key.name, key.of(battery));
-    for (const auto& [name, value] : found) {
-      if (name != key.name) continue;
+    if (const auto found = fit.find(key.name); found != fit.end()) {
+      const Fitted& value = found->second;
       text += fmt::format("  # +- {:.2g}, from {}", value.standard_error, value.observations);
     }
     text += "\n";
@@ -75,14 +74,17 @@ std::string toml_of(const BatteryFit& fit, const RunConfig& config) {
   return text;
 }
 
-void print_found(const std::vector<std::pair<std::string, Fitted>>& found, bool json) {
-  for (const auto& [name, value] : found) {
+void print_found(const BatteryFit& fit, bool json) {
+  for (const BatteryKey& key : kBatteryKeys) {
+    const auto found = fit.find(key.name);
+    if (found == fit.end()) continue;
+    const Fitted& value = found->second;
     if (!json) {
-      fmt::print("{:<22} {:>9.5g} +- {:<9.2g} from {}\n", name, value.value, value.standard_error,
-                 value.observations);
+      fmt::print("{:<22} {:>9.5g} +- {:<9.2g} from {}\n", key.name, value.value,
+                 value.standard_error, value.observations);
       continue;
     }
-    const Json line = answer("battery_key", {{"key", name},
+    const Json line = answer("battery_key", {{"key", key.name},
                                              {"value", Decimals{value.value, 6}},
                                              {"standard_error", Decimals{value.standard_error, 6}},
                                              {"observations", value.observations}});
@@ -95,7 +97,7 @@ BatteryFit fit_from_logs(const FitArguments& options, const BatteryParameters& n
   std::vector<LoggedCycle> cycles = read_cycle_log(options.logs).cycles;
   std::erase_if(cycles, [](const LoggedCycle& cycle) { return !cycle.has_reading; });
   const BatteryFit fit = fit_battery(cycles, nameplate);
-  if (fit.found().empty()) {
+  if (fit.empty()) {
     fail(
         "{}: {} control cycles are too few to fit the battery: use several days with orders in "
         "both directions and idle cycles between them",
@@ -113,7 +115,7 @@ void write_fit(const FitArguments& options) {
   RunConfig config = load_run_config(options.config);
   if (!options.steps.empty()) take_steps(options.steps, config.battery);
   const BatteryFit fit = fit_from_logs(options, config.battery);
-  print_found(fit.found(), options.json);
+  print_found(fit, options.json);
   if (options.out.empty()) return;
   write_file(options.out, toml_of(fit, config));
   if (!options.json) fmt::print("{}\n", options.out);

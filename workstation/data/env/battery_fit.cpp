@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 #include "shared/battery_keys.h"
 #include "shared/host/user_error.h"
@@ -145,9 +147,9 @@ void fit_cold(const std::vector<MissingPower>& missing, BatteryFit& fit) {
   }
   const auto inside = static_cast<int>(best.count);
   const double quarter_hour = 1 / 8.0;  // half of one, at least
-  fit.cold_power_share = Fitted{1 - best.share, error, inside};
-  fit.cold_from_hour = Fitted{best.from / 4.0, std::max(from_error, quarter_hour), inside};
-  fit.cold_to_hour =
+  fit["cold_power_share"] = Fitted{1 - best.share, error, inside};
+  fit["cold_from_hour"] = Fitted{best.from / 4.0, std::max(from_error, quarter_hour), inside};
+  fit["cold_to_hour"] =
       Fitted{best.to % kQuarterHourCount / 4.0, std::max(to_error, quarter_hour), inside};
 }
 
@@ -284,10 +286,11 @@ void fit_efficiency(const std::vector<Run>& charged, const std::vector<Run>& dis
   const bool has_loss = found.value(2) > kSure * found.standard_error(2) && found.value(2) > 0.002;
   if (!has_loss) found = regression(x.leftCols(2), y);
   const auto n = static_cast<int>(count);
-  if (has_loss) fit.full_power_loss = Fitted{found.value(2), found.standard_error(2), n};
+  if (has_loss) fit["full_power_loss"] = Fitted{found.value(2), found.standard_error(2), n};
   const double inverse = found.value(1);
-  fit.charge_efficiency = Fitted{found.value(0), found.standard_error(0), n};
-  fit.discharge_efficiency = Fitted{1 / inverse, found.standard_error(1) / (inverse * inverse), n};
+  fit["charge_efficiency"] = Fitted{found.value(0), found.standard_error(0), n};
+  fit["discharge_efficiency"] =
+      Fitted{1 / inverse, found.standard_error(1) / (inverse * inverse), n};
   if (found.value(0) > 1.01 || inverse < 0.99 || found.value(0) < 0.5 || inverse > 2) {
     fail(
         "the fitted efficiencies, {:.3f} (charging) and {:.3f} (discharging), are impossible: "
@@ -314,31 +317,10 @@ void require_same_battery(const std::vector<LoggedCycle>& cycles,
 
 }  // namespace
 
-std::vector<std::pair<std::string, Fitted>> BatteryFit::found() const {
-  const std::pair<const char*, const std::optional<Fitted>&> all[] = {
-      {"charge_efficiency", charge_efficiency},
-      {"discharge_efficiency", discharge_efficiency},
-      {"charge_taper_width", charge_taper_width},
-      {"charge_taper_share", charge_taper_share},
-      {"discharge_taper_width", discharge_taper_width},
-      {"discharge_taper_share", discharge_taper_share},
-      {"full_power_loss", full_power_loss},
-      {"standby_w", standby_w},
-      {"cold_power_share", cold_power_share},
-      {"cold_from_hour", cold_from_hour},
-      {"cold_to_hour", cold_to_hour}};
-  std::vector<std::pair<std::string, Fitted>> found;
-  for (const auto& key : all) {
-    if (key.second) found.emplace_back(key.first, *key.second);
-  }
-  return found;
-}
-
-BatteryParameters BatteryFit::applied_to(BatteryParameters battery) const {
-  for (const auto& one : found()) {
-    const auto key = std::ranges::find_if(
-        kBatteryKeys, [&](const BatteryKey& known) { return known.name == one.first; });
-    key->of(battery) = one.second.value;
+BatteryParameters with_fit(BatteryParameters battery, const BatteryFit& fit) {
+  for (const BatteryKey& key : kBatteryKeys) {
+    const auto found = fit.find(key.name);
+    if (found != fit.end()) key.of(battery) = found->second.value;
   }
   battery.charge_efficiency = std::min(battery.charge_efficiency, 1.0);
   battery.discharge_efficiency = std::min(battery.discharge_efficiency, 1.0);
@@ -349,17 +331,18 @@ BatteryFit fit_battery(const std::vector<LoggedCycle>& cycles, const BatteryPara
   require_same_battery(cycles, nameplate);
   const std::vector<Interval> intervals = intervals_of(cycles);
   BatteryFit fit;
-  fit.standby_w = standby_of(intervals);
-  const double standby_w = fit.standby_w ? fit.standby_w->value : 0;
+  const std::optional<Fitted> standby = standby_of(intervals);
+  if (standby) fit["standby_w"] = *standby;
+  const double standby_w = standby ? standby->value : 0;
   fit_cold(missing_of(intervals, nameplate, standby_w), fit);
-  const ColdHours cold = fit.applied_to(nameplate).cold;
+  const ColdHours cold = with_fit(nameplate, fit).cold;
   if (const auto taper = taper_of(intervals, nameplate, standby_w, 1, cold)) {
-    fit.charge_taper_width = taper->width;
-    fit.charge_taper_share = taper->share;
+    fit["charge_taper_width"] = taper->width;
+    fit["charge_taper_share"] = taper->share;
   }
   if (const auto taper = taper_of(intervals, nameplate, standby_w, -1, cold)) {
-    fit.discharge_taper_width = taper->width;
-    fit.discharge_taper_share = taper->share;
+    fit["discharge_taper_width"] = taper->width;
+    fit["discharge_taper_share"] = taper->share;
   }
   fit_efficiency(runs_of(intervals, nameplate, standby_w, 1),
                  runs_of(intervals, nameplate, standby_w, -1), fit);

@@ -4,9 +4,8 @@
 // a recording: `bess-edge map check --steps`.
 #pragma once
 
-#include <optional>
-#include <string>
-#include <utility>
+#include <map>
+#include <string_view>
 #include <vector>
 
 #include "shared/battery_model.h"
@@ -20,20 +19,12 @@ struct Fitted {
   int observations = 0;
 };
 
-/// Empty where the log shows nothing: too few such cycles, or no effect above the noise.
-struct BatteryFit {
-  std::optional<Fitted> standby_w;
-  std::optional<Fitted> charge_taper_width, charge_taper_share;
-  std::optional<Fitted> discharge_taper_width, discharge_taper_share;
-  std::optional<Fitted> charge_efficiency, discharge_efficiency;
-  std::optional<Fitted> full_power_loss;
-  std::optional<Fitted> cold_power_share, cold_from_hour, cold_to_hour;
+/// Parameters found, by their names in [battery]; absent where the log shows nothing: too few such
+/// cycles, or no effect above the noise.
+using BatteryFit = std::map<std::string_view, Fitted>;
 
-  /// The parameters found, under the names of [battery].
-  [[nodiscard]] std::vector<std::pair<std::string, Fitted>> found() const;
-  /// `battery` with the parameters found.
-  [[nodiscard]] BatteryParameters applied_to(BatteryParameters battery) const;
-};
+/// `battery` with the parameters found.
+BatteryParameters with_fit(BatteryParameters battery, const BatteryFit& fit);
 
 /// All `cycles` have a reading. Power, capacity and SoC window are those of `nameplate`. Throws
 /// UserError if the log contradicts them: more than the rated power, or more energy out of the

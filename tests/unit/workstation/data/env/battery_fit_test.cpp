@@ -63,20 +63,20 @@ TEST(BatteryFit, FindsEachOfItsParametersWithinThreePercent) {
   const BatteryParameters real = real_battery();
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const BatteryFit fit = fit_battery(log_of(real, 14, seed), kHouse);
-    const auto expect = [](const std::optional<Fitted>& found, double truth, const char* name) {
-      ASSERT_TRUE(found) << name;
-      EXPECT_NEAR(found->value, truth, 0.03 * truth) << name;
-      EXPECT_GT(found->standard_error, 0) << name;
-      EXPECT_LT(found->standard_error, 0.1 * truth) << name;
+    const auto expect = [&fit](const char* name, double truth) {
+      ASSERT_TRUE(fit.contains(name)) << name;
+      EXPECT_NEAR(fit.at(name).value, truth, 0.03 * truth) << name;
+      EXPECT_GT(fit.at(name).standard_error, 0) << name;
+      EXPECT_LT(fit.at(name).standard_error, 0.1 * truth) << name;
     };
-    expect(fit.charge_efficiency, 0.965, "charge_efficiency");
-    expect(fit.discharge_efficiency, 0.955, "discharge_efficiency");
-    expect(fit.charge_taper_width, 0.12, "charge_taper_width");
-    expect(fit.charge_taper_share, 0.25, "charge_taper_share");
-    expect(fit.discharge_taper_width, 0.06, "discharge_taper_width");
-    expect(fit.discharge_taper_share, 0.4, "discharge_taper_share");
-    expect(fit.full_power_loss, 0.03, "full_power_loss");
-    expect(fit.standby_w, 35, "standby_w");
+    expect("charge_efficiency", 0.965);
+    expect("discharge_efficiency", 0.955);
+    expect("charge_taper_width", 0.12);
+    expect("charge_taper_share", 0.25);
+    expect("discharge_taper_width", 0.06);
+    expect("discharge_taper_share", 0.4);
+    expect("full_power_loss", 0.03);
+    expect("standby_w", 35);
   }
 }
 
@@ -86,41 +86,43 @@ TEST(BatteryFit, FindsTheColdHoursWhetherTheBatterySaysThemOrNot) {
   for (const bool says_limits : {false, true}) {
     for (const std::uint64_t seed : {1U, 2U, 3U}) {
       const BatteryFit fit = fit_battery(log_of(real, 14, seed, says_limits), kHouse);
-      ASSERT_TRUE(fit.cold_power_share);
-      EXPECT_NEAR(fit.cold_power_share->value, 0.6, 0.018);
-      EXPECT_NEAR(fit.cold_from_hour->value, 22.5, 0.25 + fit.cold_from_hour->standard_error);
-      EXPECT_NEAR(fit.cold_to_hour->value, 7, 0.25 + fit.cold_to_hour->standard_error);
-      EXPECT_LE(fit.cold_to_hour->standard_error, 0.5);
-      EXPECT_EQ(fit.applied_to(kHouse).cold.power_share, fit.cold_power_share->value);
-      ASSERT_TRUE(fit.charge_taper_share) << "the limit in the cold is no taper";
-      EXPECT_NEAR(fit.charge_taper_share->value, 0.25, 0.0125);
-      EXPECT_NEAR(fit.discharge_taper_width->value, 0.06, 0.004);
+      ASSERT_TRUE(fit.contains("cold_power_share"));
+      EXPECT_NEAR(fit.at("cold_power_share").value, 0.6, 0.018);
+      EXPECT_NEAR(fit.at("cold_from_hour").value, 22.5,
+                  0.25 + fit.at("cold_from_hour").standard_error);
+      EXPECT_NEAR(fit.at("cold_to_hour").value, 7, 0.25 + fit.at("cold_to_hour").standard_error);
+      EXPECT_LE(fit.at("cold_to_hour").standard_error, 0.5);
+      EXPECT_EQ(with_fit(kHouse, fit).cold.power_share, fit.at("cold_power_share").value);
+      ASSERT_TRUE(fit.contains("charge_taper_share")) << "the limit in the cold is no taper";
+      EXPECT_NEAR(fit.at("charge_taper_share").value, 0.25, 0.0125);
+      EXPECT_NEAR(fit.at("discharge_taper_width").value, 0.06, 0.004);
     }
   }
 }
 
 TEST(BatteryFit, WhatABatteryDoesNotDoIsNotFound) {
   const BatteryFit fit = fit_battery(log_of(kHouse, 14, 4), kHouse);
-  EXPECT_FALSE(fit.charge_taper_width);
-  EXPECT_FALSE(fit.discharge_taper_share);
-  EXPECT_FALSE(fit.full_power_loss);
-  EXPECT_FALSE(fit.standby_w);
-  EXPECT_FALSE(fit.cold_power_share);
-  EXPECT_FALSE(fit_battery(log_of(real_battery(), 14, 4), kHouse).cold_power_share) << "tapers";
-  ASSERT_TRUE(fit.charge_efficiency);
-  EXPECT_NEAR(fit.charge_efficiency->value, kHouse.charge_efficiency, 0.003);
-  EXPECT_NEAR(fit.discharge_efficiency->value, kHouse.discharge_efficiency, 0.003);
+  EXPECT_FALSE(fit.contains("charge_taper_width"));
+  EXPECT_FALSE(fit.contains("discharge_taper_share"));
+  EXPECT_FALSE(fit.contains("full_power_loss"));
+  EXPECT_FALSE(fit.contains("standby_w"));
+  EXPECT_FALSE(fit.contains("cold_power_share"));
+  EXPECT_FALSE(fit_battery(log_of(real_battery(), 14, 4), kHouse).contains("cold_power_share"))
+      << "tapers";
+  ASSERT_TRUE(fit.contains("charge_efficiency"));
+  EXPECT_NEAR(fit.at("charge_efficiency").value, kHouse.charge_efficiency, 0.003);
+  EXPECT_NEAR(fit.at("discharge_efficiency").value, kHouse.discharge_efficiency, 0.003);
 }
 
 TEST(BatteryFit, AShortLogWithGapsShowsOnlyWhatItCan) {
   std::vector<LoggedCycle> cycles = log_of(real_battery(), 14, 5);
   Random random(6);
   std::erase_if(cycles, [&](const LoggedCycle&) { return random.uniform() < 0.2; });
-  EXPECT_NEAR(fit_battery(cycles, kHouse).charge_taper_share->value, 0.25, 0.0125);
+  EXPECT_NEAR(fit_battery(cycles, kHouse).at("charge_taper_share").value, 0.25, 0.0125);
   cycles.resize(20);
   const BatteryFit little = fit_battery(cycles, kHouse);
-  EXPECT_FALSE(little.charge_efficiency);
-  EXPECT_FALSE(little.charge_taper_width);
+  EXPECT_FALSE(little.contains("charge_efficiency"));
+  EXPECT_FALSE(little.contains("charge_taper_width"));
 }
 
 TEST(BatteryFit, TheLogOfAnotherBatteryIsRefused) {
