@@ -34,11 +34,7 @@ LocalDate local_date_of(std::int64_t utc_s) {
 }
 
 std::int64_t local_midnight_utc_s(const LocalDate& date) {
-  const std::int64_t as_utc_s = utc_from_civil({date.year, date.month, date.day, 0, 0, 0});
-  // Time zones are within 14 h of UTC; the first quarter-hour with the date is its midnight.
-  std::int64_t utc_s = as_utc_s - 14 * 3600;
-  while (local_date_of(utc_s) < date) utc_s += 900;
-  return utc_s;
+  return utc_from_local({date.year, date.month, date.day, 0, 0, 0});
 }
 
 }  // namespace bess
