@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <ranges>
 
 #include "shared/crc32.h"
 #include "shared/host/file.h"
@@ -126,33 +127,40 @@ std::optional<WindowRows> fetch_window(const FetchRequest& request, const FetchW
   return std::move(download->rows);
 }
 
-/// Rows of each window, or nothing if interrupted. Cached windows come first, so that the rate is
-/// that of the downloads.
-std::optional<std::vector<WindowRows>> fetch_windows(const FetchRequest& request,
-                                                     const std::vector<FetchWindow>& windows,
-                                                     const std::atomic<bool>& interrupted) {
-  std::vector<WindowRows> rows(windows.size());
-  std::vector<std::size_t> wanted;
-  for (std::size_t i = 0; i < windows.size(); ++i) {
-    if (interrupted) return std::nullopt;
-    std::optional<WindowRows> kept = kept_rows(request, windows[i]);
-    if (kept) rows[i] = std::move(*kept);
-    if (!kept) wanted.push_back(i);
+struct FetchedWindow {
+  FetchWindow window;
+  WindowRows rows{};
+  std::vector<Gap> gaps{};  ///< without an end that is still being published
+};
+
+/// Nothing if interrupted. Cached windows come first, so that the rate is that of the downloads.
+std::optional<std::vector<FetchedWindow>> fetch_windows(const FetchRequest& request,
+                                                        const std::atomic<bool>& interrupted) {
+  std::vector<FetchedWindow> all;
+  for (const FetchWindow& window : plan_fetch(request.span, request.now_utc_s)) {
+    all.push_back({window});
   }
-  if (wanted.size() < windows.size()) {
+  std::vector<FetchedWindow*> wanted;
+  for (FetchedWindow& of : all) {
+    if (interrupted) return std::nullopt;
+    std::optional<WindowRows> kept = kept_rows(request, of.window);
+    if (kept) of.rows = std::move(*kept);
+    if (!kept) wanted.push_back(&of);
+  }
+  if (wanted.size() < all.size()) {
     fmt::print(stderr, "fetch: {} kept from an earlier run\n",
-               counted(windows.size() - wanted.size(), "window"));
+               counted(all.size() - wanted.size(), "window"));
   }
   Progress progress("fetch", "windows", static_cast<double>(wanted.size()));
-  for (std::size_t done = 0; done < wanted.size(); ++done) {
-    const FetchWindow& window = windows[wanted[done]];
-    progress.update(static_cast<double>(done), window.dataset);
-    std::optional<WindowRows> fetched = fetch_window(request, window, interrupted);
+  double done = 0;
+  for (FetchedWindow* of : wanted) {
+    progress.update(done++, of->window.dataset);
+    std::optional<WindowRows> fetched = fetch_window(request, of->window, interrupted);
     if (!fetched) return std::nullopt;
-    rows[wanted[done]] = std::move(*fetched);
+    of->rows = std::move(*fetched);
   }
-  progress.update(static_cast<double>(wanted.size()));
-  return rows;
+  progress.update(done);
+  return all;
 }
 
 void remove_kept_windows(const FetchRequest& request) {
@@ -184,7 +192,9 @@ JoinedMarket join_or_forget(const FetchRequest& request, MarketRows rows) {
 }
 
 /// Part of the span that daily datasets do not contain yet.
-std::string describe_unpublished(const FetchWindow& window, const MarketRows& rows) {
+std::string describe_unpublished(const FetchedWindow& of) {
+  const FetchWindow& window = of.window;
+  const MarketRows& rows = of.rows.rows;
   if (!window.settles_later || is_near_real_time(window.dataset)) return {};
   std::int64_t end_utc_s = window.from_utc_s;
   for (const MinuteRow& row : rows.minutes) end_utc_s = std::max(end_utc_s, row.utc_s + 60);
@@ -197,19 +207,18 @@ std::string describe_unpublished(const FetchWindow& window, const MarketRows& ro
       window.dataset, utc_text(end_utc_s).view(), utc_text(window.until_utc_s).view());
 }
 
-std::string describe_windows(const std::vector<FetchWindow>& windows,
-                             const std::vector<WindowRows>& rows) {
+std::string describe_windows(const std::vector<FetchedWindow>& windows) {
   std::string text;
   std::size_t unended = 0;
-  for (std::size_t i = 0; i < windows.size(); ++i) {
-    const std::string unpublished = describe_unpublished(windows[i], rows[i].rows);
-    if (unpublished.empty() && rows[i].received == 0) {
-      text += fmt::format("{}: no rows from {} to {}\n", windows[i].dataset,
-                          utc_text(windows[i].from_utc_s).view(),
-                          utc_text(windows[i].until_utc_s).view());
+  for (const FetchedWindow& of : windows) {
+    const std::string unpublished = describe_unpublished(of);
+    if (unpublished.empty() && of.rows.received == 0) {
+      text += fmt::format("{}: no rows from {} to {}\n", of.window.dataset,
+                          utc_text(of.window.from_utc_s).view(),
+                          utc_text(of.window.until_utc_s).view());
     }
     text += unpublished;
-    unended += rows[i].unended;
+    unended += of.rows.unended;
   }
   if (unended > 0) {
     text += fmt::format("{} dropped: minutes or quarter-hours that had not ended\n",
@@ -219,101 +228,92 @@ std::string describe_windows(const std::vector<FetchWindow>& windows,
 }
 
 /// Missing ends of the span without a row in any window are described with the windows.
-std::string describe_coverage(const FetchRequest& request, const std::vector<FetchWindow>& windows,
-                              const std::vector<WindowRows>& rows, const MinuteSeries& series) {
+std::string describe_coverage(const FetchRequest& request,
+                              const std::vector<FetchedWindow>& windows,
+                              const MinuteSeries& series) {
+  const auto nothing = [](std::int64_t from_utc_s, std::int64_t until_utc_s) {
+    return fmt::format("nothing published from {} to {}\n", utc_text(from_utc_s).view(),
+                       utc_text(until_utc_s).view());
+  };
   std::string text;
   std::int64_t from_utc_s = series.start_utc_s;
-  std::int64_t until_utc_s = series.utc_s(series.size());
-  for (std::size_t i = 0; i < windows.size(); ++i) {
-    if (count_of(rows[i].rows) == 0) continue;
-    from_utc_s = std::min(from_utc_s, windows[i].from_utc_s);
-    if (!describe_unpublished(windows[i], rows[i].rows).empty()) continue;
-    until_utc_s = std::max(until_utc_s, std::min(windows[i].until_utc_s, request.now_utc_s));
-  }
   const std::int64_t end_utc_s = series.utc_s(series.size());
-  if (from_utc_s < series.start_utc_s) {
-    text += fmt::format("nothing published from {} to {}\n", utc_text(from_utc_s).view(),
-                        utc_text(series.start_utc_s).view());
+  std::int64_t until_utc_s = end_utc_s;
+  for (const FetchedWindow& of : windows) {
+    if (count_of(of.rows.rows) == 0) continue;
+    from_utc_s = std::min(from_utc_s, of.window.from_utc_s);
+    if (!describe_unpublished(of).empty()) continue;
+    until_utc_s = std::max(until_utc_s, std::min(of.window.until_utc_s, request.now_utc_s));
   }
-  if (end_utc_s + kSecondsPerQuarterHour < until_utc_s) {
-    text += fmt::format("nothing published from {} to {}\n", utc_text(end_utc_s).view(),
-                        utc_text(until_utc_s).view());
-  }
+  if (from_utc_s < series.start_utc_s) text += nothing(from_utc_s, series.start_utc_s);
+  if (end_utc_s + kSecondsPerQuarterHour < until_utc_s) text += nothing(end_utc_s, until_utc_s);
   return text;
 }
 
-/// Gaps by window, without an end that is still being published.
-struct WindowGaps {
-  const FetchWindow* window;
-  const WindowRows* rows;
-  std::vector<Gap> gaps;
-};
-
-std::vector<WindowGaps> gaps_of(const FetchRequest& request,
-                                const std::vector<FetchWindow>& windows,
-                                const std::vector<WindowRows>& rows) {
-  std::vector<WindowGaps> all;
+/// Backwards: only an end that no later rows follow may still be published.
+void find_gaps(const FetchRequest& request, std::vector<FetchedWindow>& windows) {
   bool minutes_follow = false;
   bool quarter_hours_follow = false;
-  for (std::size_t i = windows.size(); i-- > 0;) {
-    const FetchWindow& window = windows[i];
-    bool& follow = holds_minutes(window.dataset) ? minutes_follow : quarter_hours_follow;
-    std::vector<Gap> gaps = holes_in(window, rows[i].rows, request.now_utc_s);
-    const bool ends_open = !follow && window.settles_later && !rows[i].lacks_rows_of_total();
-    const std::int64_t end_utc_s = std::min(window.until_utc_s, request.now_utc_s);
-    if (ends_open && !gaps.empty() &&
-        gaps.back().until_utc_s + kSecondsPerQuarterHour > end_utc_s) {
-      gaps.pop_back();
+  for (FetchedWindow& of : std::views::reverse(windows)) {
+    bool& follow = holds_minutes(of.window.dataset) ? minutes_follow : quarter_hours_follow;
+    of.gaps = holes_in(of.window, of.rows.rows, request.now_utc_s);
+    const bool ends_open = !follow && of.window.settles_later && !of.rows.lacks_rows_of_total();
+    const std::int64_t end_utc_s = std::min(of.window.until_utc_s, request.now_utc_s);
+    if (ends_open && !of.gaps.empty() &&
+        of.gaps.back().until_utc_s + kSecondsPerQuarterHour > end_utc_s) {
+      of.gaps.pop_back();
     }
-    follow = follow || count_of(rows[i].rows) > 0;
-    if (!gaps.empty()) all.push_back({&window, &rows[i], std::move(gaps)});
+    follow = follow || count_of(of.rows.rows) > 0;
   }
-  std::ranges::reverse(all);
-  return all;
 }
 
 /// "ods046: 2780 of 2880 minutes missing, the first from ... to ...; the server has no more".
-std::string describe_missing(const WindowGaps& of, std::int64_t now_utc_s) {
-  const bool minutes = holds_minutes(of.window->dataset);
+std::string describe_missing(const FetchedWindow& of, std::int64_t now_utc_s) {
+  const bool minutes = holds_minutes(of.window.dataset);
   const std::int64_t missing_min = minutes_in(of.gaps);
   const bool has_empty_rows =
-      missing_min > minutes_in(missing_in(*of.window, of.rows->rows, now_utc_s));
+      missing_min > minutes_in(missing_in(of.window, of.rows.rows, now_utc_s));
   std::string text = fmt::format(
       "{} of {} {} {} in {}, first from {} to {}", minutes ? missing_min : missing_min / 15,
-      expected_rows(*of.window, now_utc_s), minutes ? "minutes" : "quarter-hours",
-      has_empty_rows ? "missing or without a price" : "missing", of.window->dataset,
+      expected_rows(of.window, now_utc_s), minutes ? "minutes" : "quarter-hours",
+      has_empty_rows ? "missing or without a price" : "missing", of.window.dataset,
       utc_text(of.gaps.front().from_utc_s).view(), utc_text(of.gaps.front().until_utc_s).view());
-  const std::optional<std::size_t>& total = of.rows->total;
-  if (of.rows->lacks_rows_of_total()) {
+  const std::optional<std::size_t>& total = of.rows.total;
+  if (of.rows.lacks_rows_of_total()) {
     text += fmt::format(" (the server counts {} and sent {})", counted(*total, "row"),
-                        of.rows->distinct);
+                        of.rows.distinct);
   } else if (total) {
     text += " (the server has no more)";
-  } else if (of.window->settles_later) {
+  } else if (of.window.settles_later) {
     text += " (refreshed once a day: perhaps tomorrow)";
   }
   return text;
 }
 
-void require_no_gaps(const FetchRequest& request, const std::vector<WindowGaps>& gaps) {
-  if (gaps.empty() || request.allow_gaps) return;
-  fail(
-      "{}{}: {}; run again later, or with --allow-gaps for a file with gaps",
-      describe_missing(gaps.front(), request.now_utc_s),
-      gaps.size() == 1 ? "" : fmt::format(", and {} with gaps", counted(gaps.size() - 1, "window")),
-      host_of(request.base_url));
-}
-
-std::string describe_allowed(const FetchRequest& request, const std::vector<WindowGaps>& gaps) {
+/// One line for each window with gaps; throws UserError for the first unless they are allowed.
+std::string describe_allowed_gaps(const FetchRequest& request,
+                                  const std::vector<FetchedWindow>& windows) {
+  std::vector<std::string> missing;
+  for (const FetchedWindow& of : windows) {
+    if (!of.gaps.empty()) missing.push_back(describe_missing(of, request.now_utc_s));
+  }
+  if (!missing.empty() && !request.allow_gaps) {
+    fail("{}{}: {}; run again later, or with --allow-gaps for a file with gaps", missing.front(),
+         missing.size() == 1
+             ? ""
+             : fmt::format(", and {} with gaps", counted(missing.size() - 1, "window")),
+         host_of(request.base_url));
+  }
   std::string text;
-  for (const WindowGaps& of : gaps) text += describe_missing(of, request.now_utc_s) + "\n";
+  for (const std::string& line : missing) text += line + "\n";
   return text;
 }
 
-std::string provenance_of(const FetchRequest& request, const std::vector<FetchWindow>& windows) {
+std::string provenance_of(const FetchRequest& request, const std::vector<FetchedWindow>& windows) {
   std::string datasets;
-  for (const FetchWindow& window : windows) {
-    if (datasets.find(window.dataset) == std::string::npos) datasets += " " + window.dataset;
+  for (const FetchedWindow& of : windows) {
+    const std::string& dataset = of.window.dataset;
+    if (datasets.find(dataset) == std::string::npos) datasets += " " + dataset;
   }
   return fmt::format("{}\nDatasets{} fetched {} from {} by bess-train {}\n",
                      attribution_of({MarketSource::kElia}), datasets,
@@ -326,21 +326,19 @@ fs::path fetch_cache_folder(const FetchRequest& request) { return request.out.st
 
 std::optional<FetchedPrices> fetch_prices(const FetchRequest& request,
                                           const std::atomic<bool>& interrupted) {
-  const std::vector<FetchWindow> windows = plan_fetch(request.span, request.now_utc_s);
-  const std::optional<std::vector<WindowRows>> rows = fetch_windows(request, windows, interrupted);
-  if (!rows) return std::nullopt;
+  std::optional<std::vector<FetchedWindow>> windows = fetch_windows(request, interrupted);
+  if (!windows) return std::nullopt;
   MarketRows all;
-  for (const WindowRows& of_window : *rows) append_rows(all, of_window.rows);
-  if (count_of(all) == 0) fail_without_prices(request, windows.front());
-  const std::vector<WindowGaps> gaps = gaps_of(request, windows, *rows);
-  require_no_gaps(request, gaps);
+  for (const FetchedWindow& of : *windows) append_rows(all, of.rows.rows);
+  if (count_of(all) == 0) fail_without_prices(request, windows->front().window);
+  find_gaps(request, *windows);
+  const std::string gaps = describe_allowed_gaps(request, *windows);
   FetchedPrices fetched{join_or_forget(request, std::move(all)), {}};
   judge(implausible(fetched.market.series), request.accepted, {{host_of(request.base_url), {}}});
-  fetched.description = describe_join(fetched.market) + describe_windows(windows, *rows) +
-                        describe_coverage(request, windows, *rows, fetched.market.series) +
-                        describe_allowed(request, gaps);
+  fetched.description = describe_join(fetched.market) + describe_windows(*windows) +
+                        describe_coverage(request, *windows, fetched.market.series) + gaps;
   write_minute_file(request.out, fetched.market.series,
-                    provenance_of(request, windows) + fetched.description);
+                    provenance_of(request, *windows) + fetched.description);
   remove_kept_windows(request);
   return fetched;
 }
