@@ -8,7 +8,7 @@
 #include "shared/host/user_error.h"
 #include "workstation/base/answer.h"
 #include "workstation/cli/commands.h"
-#include "workstation/correction/rules/properties.h"
+#include "workstation/correction/rules/rule.h"
 #include "workstation/correction/rules/rule_conflicts.h"
 #include "workstation/correction/rules/ruled_policy.h"
 #include "workstation/data/env/context_fit.h"

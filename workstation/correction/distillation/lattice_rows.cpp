@@ -5,7 +5,6 @@
 
 #include "shared/nn/student_net.h"
 #include "workstation/correction/distillation/constraint_layer.h"
-#include "workstation/correction/rules/properties.h"
 
 namespace bess {
 namespace {

@@ -8,7 +8,6 @@
 
 #include "workstation/base/progress.h"
 #include "workstation/correction/distillation/constraint_layer.h"
-#include "workstation/correction/rules/properties.h"
 
 namespace bess {
 

@@ -127,8 +127,8 @@ struct Rule {
   DemandPointer demand = action_demand(kAllActions);
   bool enforce = false;       ///< by the guard too
   bool is_threshold = false;  ///< replaces a threshold of property 1 or 2
-  int property = 0;     ///< 1 to 3: one of the built-in rules (properties.h); 0: an operator's
-  std::string place{};  ///< "FILE:LINE", for messages
+  int property = 0;           ///< 1 to 3: one of the built-in rules (below); 0: an operator's
+  std::string place{};        ///< "FILE:LINE", for messages
 
   [[nodiscard]] ActionSet actions() const { return demand->actions(); }
   [[nodiscard]] Action lowest() const { return lowest_of(actions()); }
@@ -200,5 +200,29 @@ std::string hour_text(int quarter_hour);
 
 /// "1, 2, 11": the members of a set of months or classes.
 std::string members_text(std::int32_t bits);
+
+// The three properties [SPEC 5] as built-in rules in the form of operator's rules: charge at or
+// below the low price, discharge at or above the high price, and two directions (property 3: price
+// and SoC).
+
+inline constexpr int kPropertyCount = 3;
+inline constexpr std::size_t kBuiltInRuleCount = 4;
+
+/// The four built-in rules for these thresholds.
+RuleSet built_in_rules(const PriceThresholds& thresholds);
+/// The built-in rules, then the operator's.
+RuleSet with_built_in(const PriceThresholds& thresholds, const RuleSet& rules);
+/// The same with the given thresholds, as far as the rules do not replace them.
+RuleSet with_properties(const RuleSet& rules, const PriceThresholds& thresholds);
+
+/// "charge at or below -500 EUR/MWh"; `property` is 1 to 3.
+std::string property_text(int property, const PriceThresholds& thresholds);
+
+// Additional rule of a student with the outlook context: the action never falls when the plan's
+// break-even price rises. In the plan that price never rises with SoC
+// (shared/outlook/outlook_plan.h), so with property 3 the decision never rises with SoC.
+
+/// `rules` with the additional rule, unless already present.
+RuleSet with_outlook_rule(const RuleSet& rules);
 
 }  // namespace bess

@@ -6,7 +6,6 @@
 #include <bit>
 
 #include "shared/host/user_error.h"
-#include "workstation/correction/rules/properties.h"
 
 namespace bess {
 namespace {

@@ -11,7 +11,6 @@
 #include "shared/features.h"
 #include "shared/nn/student_net.h"
 #include "shared/price_thresholds.h"
-#include "workstation/correction/rules/properties.h"
 #include "workstation/correction/rules/rule.h"
 
 namespace bess {

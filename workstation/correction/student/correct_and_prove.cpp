@@ -9,7 +9,6 @@
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/correction/distillation/monotone_distil.h"
-#include "workstation/correction/rules/properties.h"
 #include "workstation/correction/student/student_file.h"
 #include "workstation/correction/student/student_policy.h"
 #include "workstation/correction/student/verify.h"

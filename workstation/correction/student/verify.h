@@ -1,7 +1,7 @@
 // Verification: the integer student's action on ALL 6,950,033,280 lattice states [SPEC 6].
 //
 // For each of the 17,280 contexts (T_qh, qh, mo) the action grid over SoC x price is filled, then
-// checked against every rule (certificate.h), four of them built in (rules/properties.h):
+// checked against every rule (certificate.h), four of them built in (rules/rule.h):
 //   property 1   states with price <= low whose action is not charge
 //   property 2   states with price >= high whose action is not discharge
 //   property 3   neighbour pairs (price + 1, or SoC + 1) where the action increases; the order of

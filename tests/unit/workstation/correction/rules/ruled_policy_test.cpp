@@ -1,7 +1,6 @@
 // Ruled policy: the nearest allowed action, nothing else changed, and its money counted.
 #include "workstation/correction/rules/ruled_policy.h"
 #include "tests/support/carried_over.h"
-#include "workstation/correction/rules/properties.h"
 
 #include <gtest/gtest.h>
 

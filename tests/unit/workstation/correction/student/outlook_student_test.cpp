@@ -9,7 +9,7 @@
 #include "tests/support/tokens.h"
 #include "tests/support/user_error_of.h"
 #include "workstation/correction/distillation/monotone_distil.h"
-#include "workstation/correction/rules/properties.h"
+#include "workstation/correction/rules/rule.h"
 #include "workstation/correction/rules/rule_file.h"
 #include "workstation/correction/student/correct_and_prove.h"
 #include "workstation/correction/student/student_file.h"
