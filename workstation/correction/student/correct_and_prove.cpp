@@ -11,7 +11,6 @@
 #include "workstation/correction/distillation/monotone_distil.h"
 #include "workstation/correction/student/student_file.h"
 #include "workstation/correction/student/student_policy.h"
-#include "workstation/correction/student/verify.h"
 #include "workstation/data/env/evaluate.h"
 
 namespace bess {

@@ -7,8 +7,6 @@
 
 #include "shared/host/csv.h"
 #include "workstation/correction/rules/rule_conflicts.h"
-#include "workstation/correction/student/certificate.h"
-#include "workstation/correction/student/verify.h"
 
 namespace bess {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "workstation/correction/student/verify.h"
+#include "workstation/correction/student/certificate.h"
 #include "workstation/data/env/day_errors.h"
 #include "workstation/data/market/series/imbalance_price.h"
 #include "workstation/report/figures/html.h"

@@ -14,7 +14,6 @@
 #include "workstation/correction/student/certificate.h"
 #include "workstation/correction/student/correct_and_prove.h"
 #include "workstation/correction/student/student_policy.h"
-#include "workstation/correction/student/verify.h"
 
 namespace bess {
 namespace {

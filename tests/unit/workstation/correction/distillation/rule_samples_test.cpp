@@ -9,7 +9,7 @@
 #include "tests/support/rule_sets.h"
 #include "tests/support/student_nets.h"
 #include "workstation/correction/distillation/constraint_layer.h"
-#include "workstation/correction/student/verify.h"
+#include "workstation/correction/student/certificate.h"
 
 namespace bess {
 namespace {

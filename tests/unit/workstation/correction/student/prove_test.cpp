@@ -11,8 +11,8 @@
 #include "tests/support/rule_sets.h"
 #include "tests/support/student_nets.h"
 #include "tests/support/tokens.h"
+#include "workstation/correction/student/certificate.h"
 #include "workstation/correction/student/export.h"
-#include "workstation/correction/student/verify.h"
 
 namespace bess {
 namespace {

@@ -8,7 +8,6 @@
 
 #include "tests/support/rule_sets.h"
 #include "tests/support/student_nets.h"
-#include "workstation/correction/student/verify.h"
 
 namespace bess {
 namespace {

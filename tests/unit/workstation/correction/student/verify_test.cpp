@@ -1,4 +1,4 @@
-#include "workstation/correction/student/verify.h"
+#include "workstation/correction/student/certificate.h"
 
 #include <gtest/gtest.h>
 
