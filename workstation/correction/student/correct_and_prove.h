@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "workstation/correction/distillation/distil.h"
-#include "workstation/correction/student/proof_rounds.h"
 #include "workstation/correction/student/prove.h"
 
 namespace bess {

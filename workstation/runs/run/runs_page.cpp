@@ -6,7 +6,7 @@
 #include "shared/host/file.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
-#include "workstation/correction/student/proof_rounds.h"
+#include "workstation/correction/student/prove.h"
 #include "workstation/data/env/day_errors.h"
 #include "workstation/report/figures/html.h"
 #include "workstation/report/report_tables.h"

@@ -1,4 +1,4 @@
-#include "workstation/correction/student/proof_rounds.h"
+#include "workstation/correction/student/prove.h"
 
 #include <gmock/gmock.h>
 

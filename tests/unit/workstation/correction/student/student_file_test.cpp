@@ -12,7 +12,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 #include "tests/support/user_error_of.h"
-#include "workstation/correction/student/proof_rounds.h"
+#include "workstation/correction/student/prove.h"
 
 namespace bess {
 namespace {
