@@ -16,7 +16,6 @@
 #include "workstation/data/market/feed/market_join.h"
 #include "workstation/data/market/feed/market_rows.h"
 #include "workstation/data/market/series/checked_prices.h"
-#include "workstation/data/market/series/gaps.h"
 #include "workstation/data/market/series/local_date.h"
 
 namespace bess {

@@ -9,7 +9,6 @@
 #include "shared/host/user_error.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
-#include "workstation/data/market/series/gaps.h"
 
 namespace bess {
 

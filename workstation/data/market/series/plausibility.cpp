@@ -1,6 +1,5 @@
 #include "workstation/data/market/series/plausibility.h"
 
-#include <fmt/core.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,8 +12,6 @@
 #include "shared/local_time.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
-#include "workstation/data/market/series/gaps.h"
-#include "workstation/data/market/series/local_date.h"
 
 namespace bess {
 
@@ -28,6 +25,7 @@ constexpr double kUnitLowMax = 5;
 constexpr double kUnitHighMin = 1'500, kUnitHighMax = 1.5e6;
 constexpr std::int64_t kGapWorthNaming_min = 60;
 constexpr double kGapShareMax = 0.05;
+constexpr std::size_t kGapsListed = 5;
 constexpr std::int64_t kEarliest_s = 946'684'800;  // 2000-01-01
 constexpr std::int64_t kLatest_s = 4'102'444'800;  // 2100-01-01
 /// Placeholders of databases and instruments for missing values that no market has settled at or
@@ -306,17 +304,16 @@ void check_gaps(const Column& column, Findings& findings) {
            gap.until_utc_s == column.utc_s(column.prices.size());
   });
   if (gaps.empty()) return;
-  const auto length_min = [](const Gap& gap) { return (gap.until_utc_s - gap.from_utc_s) / 60; };
-  const Gap largest = *std::ranges::max_element(gaps, {}, length_min);
+  const Gap largest = *std::ranges::max_element(gaps, {}, &Gap::minutes);
   const std::int64_t missing_min = minutes_in(gaps);
   const double share = static_cast<double>(missing_min) / static_cast<double>(column.prices.size());
-  if (length_min(largest) < kGapWorthNaming_min && share <= kGapShareMax) return;
+  if (largest.minutes() < kGapWorthNaming_min && share <= kGapShareMax) return;
   findings.warning(
       "gaps", largest.until_utc_s,
       fmt::format("{} price: {}, {} of {} minutes missing; the largest, {} minutes, from {} "
                   "to {}",
                   column.name, counted(gaps.size(), "gap"), missing_min, column.prices.size(),
-                  length_min(largest), utc_text(largest.from_utc_s).view(),
+                  largest.minutes(), utc_text(largest.from_utc_s).view(),
                   utc_text(largest.until_utc_s).view()));
 }
 
@@ -478,6 +475,41 @@ std::vector<Finding> shifted_day_ahead(const DayAheadSeries& day_ahead,
          {}}};
   }
   return {};
+}
+
+std::vector<Gap> gaps_in(std::span<const double> values, std::int64_t start_utc_s,
+                         std::int64_t step_s) {
+  std::vector<Gap> gaps;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (is_published(values[i])) continue;
+    const std::int64_t utc_s = start_utc_s + step_s * static_cast<std::int64_t>(i);
+    if (gaps.empty() || gaps.back().until_utc_s != utc_s) gaps.push_back({utc_s, utc_s});
+    gaps.back().until_utc_s = utc_s + step_s;
+  }
+  return gaps;
+}
+
+std::int64_t minutes_in(const std::vector<Gap>& gaps) {
+  std::int64_t minutes = 0;
+  for (const Gap& gap : gaps) minutes += gap.minutes();
+  return minutes;
+}
+
+std::string describe_gaps(std::string_view what, std::vector<Gap> gaps) {
+  if (gaps.empty()) return fmt::format("{}: no gaps\n", what);
+  std::string text = fmt::format("{}: {}, {} missing\n", what, counted(gaps.size(), "gap"),
+                                 counted(static_cast<std::size_t>(minutes_in(gaps)), "minute"));
+  std::stable_sort(gaps.begin(), gaps.end(),
+                   [](const Gap& a, const Gap& b) { return a.minutes() > b.minutes(); });
+  for (std::size_t i = 0; i < std::min(kGapsListed, gaps.size()); ++i) {
+    text += fmt::format("  {} to {}: {}\n", utc_text(gaps[i].from_utc_s).view(),
+                        utc_text(gaps[i].until_utc_s).view(),
+                        counted(static_cast<std::size_t>(gaps[i].minutes()), "minute"));
+  }
+  if (gaps.size() > kGapsListed) {
+    text += fmt::format("  and {}\n", counted(gaps.size() - kGapsListed, "shorter one"));
+  }
+  return text;
 }
 
 }  // namespace bess

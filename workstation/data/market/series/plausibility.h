@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,22 @@
 #include "workstation/data/market/series/day_ahead.h"
 
 namespace bess {
+
+// Gaps: time intervals without a price.
+
+struct Gap {
+  std::int64_t from_utc_s;
+  std::int64_t until_utc_s;  ///< exclusive
+  [[nodiscard]] std::int64_t minutes() const { return (until_utc_s - from_utc_s) / 60; }
+};
+
+/// Intervals of NaN in a series with one value every `step_s` seconds.
+std::vector<Gap> gaps_in(std::span<const double> values, std::int64_t start_utc_s,
+                         std::int64_t step_s);
+std::int64_t minutes_in(const std::vector<Gap>& gaps);
+
+/// "settled price: 3 gaps, 45 minutes missing" and the longest of them, one per line.
+std::string describe_gaps(std::string_view what, std::vector<Gap> gaps);
 
 /// Every finding's name: errors, then warnings, then findings of day-ahead prices only.
 inline constexpr std::array<std::string_view, 16> kFindingNames{

@@ -12,9 +12,9 @@
 
 #include "shared/host/minute_file.h"
 #include "shared/units_and_limits.h"
-#include "workstation/data/market/series/gaps.h"
 #include "workstation/data/market/series/imbalance_price.h"
 #include "workstation/data/market/series/local_date.h"
+#include "workstation/data/market/series/plausibility.h"
 
 namespace bess {
 
