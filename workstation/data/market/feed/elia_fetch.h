@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "shared/host/http_client.h"
-#include "workstation/data/market/feed/market_join.h"
 #include "workstation/data/market/feed/market_rows.h"
 #include "workstation/data/market/series/checked_prices.h"
 #include "workstation/data/market/series/local_date.h"

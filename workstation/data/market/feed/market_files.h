@@ -8,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "workstation/data/market/feed/market_join.h"
 #include "workstation/data/market/feed/market_rows.h"
 
 namespace bess {

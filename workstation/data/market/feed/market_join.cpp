@@ -1,4 +1,4 @@
-#include "workstation/data/market/feed/market_join.h"
+#include "workstation/data/market/feed/market_rows.h"
 
 #include <fmt/core.h>
 
