@@ -25,7 +25,7 @@
 #include "shared/battery_model.h"
 #include "workstation/data/env/evaluate.h"
 #include "workstation/data/env/policy.h"
-#include "workstation/data/market/model/minute_path.h"
+#include "workstation/data/market/model/simulated_market.h"
 
 namespace bess {
 

@@ -1,4 +1,4 @@
-#include "workstation/data/market/model/minute_path.h"
+#include "workstation/data/market/model/simulated_market.h"
 
 #include <algorithm>
 #include <numeric>

@@ -9,7 +9,6 @@
 #include <cmath>
 
 #include "shared/local_time.h"
-#include "workstation/data/market/model/minute_path.h"
 #include "workstation/data/market/series/imbalance_price.h"
 #include "workstation/data/market/series/local_date.h"
 #include "workstation/data/market/statistics/market_statistics.h"
