@@ -9,7 +9,6 @@
 #include "shared/host/user_error.h"
 #include "workstation/base/parallel_for.h"
 #include "workstation/base/progress.h"
-#include "workstation/policy/rl/transition.h"
 
 namespace bess {
 

@@ -5,7 +5,6 @@
 
 #include "shared/battery_model.h"
 #include "workstation/base/parallel_for.h"
-#include "workstation/policy/rl/transition.h"
 
 namespace bess {
 namespace {

@@ -6,7 +6,6 @@
 #include "shared/host/user_error.h"
 #include "workstation/base/binary_file.h"
 #include "workstation/data/env/context_fit.h"
-#include "workstation/policy/rl/transition.h"
 
 namespace bess {
 namespace {

@@ -18,7 +18,6 @@
 #include "workstation/data/env/evaluate.h"
 #include "workstation/data/env/market_steps.h"
 #include "workstation/policy/rl/teacher.h"
-#include "workstation/policy/rl/transition.h"
 
 namespace bess {
 

@@ -1,4 +1,4 @@
-#include "workstation/policy/rl/transition.h"
+#include "workstation/policy/rl/c51.h"
 
 #include <algorithm>
 

@@ -13,7 +13,6 @@
 
 #include "workstation/base/random.h"
 #include "workstation/policy/rl/c51.h"
-#include "workstation/policy/rl/transition.h"
 
 namespace bess {
 
