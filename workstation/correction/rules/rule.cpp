@@ -94,14 +94,6 @@ std::vector<GuardRule> RuleSet::guard_rules() const {
   return enforced;
 }
 
-std::vector<std::string> RuleSet::guard_rule_names() const {
-  std::vector<std::string> names;
-  for (const Rule& rule : rules) {
-    if (rule.enforce) names.push_back(rule.name);
-  }
-  return names;
-}
-
 bool binds_student(const Rule& rule, ContextKind kind) {
   if (!rule.demand->binds_student() || !overlaps_lattice(rule.box)) return false;
   return kind == ContextKind::kMonth || rule.box.months == kAllTwelve;

@@ -152,7 +152,6 @@ struct RuleSet {
   [[nodiscard]] std::vector<Direction> directions() const;
   /// Rules that the guard enforces, in order.
   [[nodiscard]] std::vector<GuardRule> guard_rules() const;
-  [[nodiscard]] std::vector<std::string> guard_rule_names() const;
 };
 
 /// Whether the proof of a student with this context counts the rule; else it is for the guard only.

@@ -136,7 +136,7 @@ TEST(RuleFile, FilesAddUpAndTheExamplesAreGood) {
   ASSERT_EQ(all.rules.size(), std::size(kExampleRules));
   EXPECT_EQ(all.rules[0].name, "black-out reserve");
   EXPECT_EQ(all.guard_rules().size(), 5U) << "all of them are enforced";
-  EXPECT_EQ(all.guard_rule_names().back(), "evening power cap");
+  EXPECT_EQ(all.rules.back().name, "evening power cap");
   EXPECT_THROW(load_rules({example_rule_path("quiet_hours"), example_rule_path("quiet_hours")}),
                UserError)
       << "the same name twice";
