@@ -53,7 +53,7 @@ void run_export(const ExportArguments& options) {
   write_file(out, format_weight_header(*student));
   fmt::print("{}: written{}, weights {:08x}, proved\n", out.string(),
              options.out.empty() ? " into the source tree" : "",
-             student_weights_hash(student->net()));
+             student_weights_hash(student->file().net));
   if (!has_folder) return;
   write_file(signature, decided + '\n');
   fmt::print("{}: written, {}\n", signature.string(), decided);

@@ -41,12 +41,12 @@ std::string row_text(const GuardRule& rule) {
 
 int lowest_member(std::int32_t bits) { return std::countr_zero(static_cast<unsigned>(bits)) + 1; }
 
-std::string guard_tables(const ProvedStudent& student, const std::vector<GuardRule>& rules) {
+std::string guard_tables(const StudentFile& student, const std::vector<GuardRule>& rules) {
   std::string rows;
   std::string names;
   for (const GuardRule& rule : rules) rows += row_text(rule);
-  for (const std::string& name : student.certificate().rules.guard_rule_names()) {
-    names += c_string_literal(name) + ",\n";
+  for (const Rule& rule : student.certificate.rules.rules) {
+    if (rule.enforce) names += c_string_literal(rule.name) + ",\n";
   }
   std::string points;
   std::string limits;
@@ -67,7 +67,7 @@ std::string guard_tables(const ProvedStudent& student, const std::vector<GuardRu
       "#define BESS_STUDENT_RULE_CHECK_COUNT {6}\n"
       "BESS_STUDENT_CONST int32_t bess_student_rule_check_point[{6}][5] = {{\n{7}}};\n"
       "BESS_STUDENT_CONST int32_t bess_student_rule_check_limits[{6}][2] = {{\n{8}}};\n",
-      rules.size(), ruled_hash(student_weights_hash(student.net()), rules), kGuardRuleFields, rows,
+      rules.size(), ruled_hash(student_weights_hash(student.net), rules), kGuardRuleFields, rows,
       kNameLengthMax + 1, names, checks.size(), points, limits);
 }
 
@@ -84,8 +84,8 @@ std::string rule_lines(const Certificate& certificate) {
 }
 
 /// Macros and tables; empty without rules.
-std::string rule_section(const ProvedStudent& student) {
-  const RuleSet& rules = student.certificate().rules;
+std::string rule_section(const StudentFile& student) {
+  const RuleSet& rules = student.certificate.rules;
   if (rules.empty()) return {};
   std::string text =
       fmt::format("#define BESS_STUDENT_RULES{}\n", literal_lines(format_rules(rules)));
@@ -269,9 +269,10 @@ class GuardWithoutLimits final : public ReplayedDecider {
 
 }  // namespace
 
-std::string format_weight_header(const ProvedStudent& student) {
-  const StudentNet& net = student.net();
-  std::string text = preamble(student.certificate());
+std::string format_weight_header(const ProvedStudent& proved) {
+  const StudentFile& student = proved.file();
+  const StudentNet& net = student.net;
+  std::string text = preamble(student.certificate);
   text += fmt::format(
       "#pragma once\n"
       "/* clang-format off */\n"
@@ -282,10 +283,9 @@ std::string format_weight_header(const ProvedStudent& student) {
       "#define BESS_STUDENT_ARCHITECTURE_HASH 0x{:08x}u\n"
       "#define BESS_STUDENT_WEIGHTS_HASH 0x{:08x}u\n",
       kHeaderVersion, student_architecture_hash(), student_weights_hash(net));
-  text += certificate_macros(student.certificate());
-  text +=
-      fmt::format("#define BESS_STUDENT_PROVENANCE {}\n", c_string_literal(student.provenance()));
-  text += training_macros(student.file());
+  text += certificate_macros(student.certificate);
+  text += fmt::format("#define BESS_STUDENT_PROVENANCE {}\n", c_string_literal(student.provenance));
+  text += training_macros(student);
   text += fmt::format("#define BESS_STUDENT_CONTEXT_IS_LEVEL {}\n",
                       net.context.kind == ContextKind::kLevel ? 1 : 0);
   text += vector("int16_t", "level_edge_eur_per_mwh", net.context.level_edge_eur_per_mwh);
@@ -300,7 +300,7 @@ std::string format_weight_header(const ProvedStudent& student) {
   text += vector("int32_t", "layer3_bias", net.layer3.bias);
   text += self_checks(net);
   text += rule_section(student);
-  if (student.file().outlook) text += outlook_section(student.file().outlook->model());
+  if (student.outlook) text += outlook_section(student.outlook->model());
   return text + "/* clang-format on */\n";
 }
 

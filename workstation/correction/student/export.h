@@ -16,7 +16,7 @@ namespace bess {
 std::vector<RulePoint> rule_check_points(const std::vector<GuardRule>& rules);
 
 /// Text of the header. Self-check vectors are corners of the lattice and states from a fixed seed.
-std::string format_weight_header(const ProvedStudent& student);
+std::string format_weight_header(const ProvedStudent& proved);
 
 /// File next to the header: expected output of `bess-edge signature` for a build with it. The time
 /// zone must be set.

@@ -130,9 +130,6 @@ inline constexpr int kSampleStride = 7;
 /// A student without violations on the whole lattice.
 class ProvedStudent {
  public:
-  [[nodiscard]] const StudentNet& net() const { return student_.net; }
-  [[nodiscard]] const Certificate& certificate() const { return student_.certificate; }
-  [[nodiscard]] const std::string& provenance() const { return student_.provenance; }
   [[nodiscard]] const StudentFile& file() const { return student_; }
 
  private:

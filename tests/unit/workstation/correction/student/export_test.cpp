@@ -97,8 +97,9 @@ TEST(Export, HeaderSaysWhatItWasProvedFor) {
   EXPECT_THAT(header, HasSubstr("BESS_STUDENT_LOW_PRICE_EUR_PER_MWH (-400)\n"));
   EXPECT_THAT(header, HasSubstr("BESS_STUDENT_HIGH_PRICE_EUR_PER_MWH (1400)\n"));
   EXPECT_THAT(header, HasSubstr("BESS_STUDENT_STATES_CHECKED INT64_C(6950033280)\n"));
-  EXPECT_THAT(header, HasSubstr(fmt::format("BESS_STUDENT_STATES_EVALUATED INT64_C({})\n",
-                                            crowded_student().certificate().states_evaluated)));
+  EXPECT_THAT(header,
+              HasSubstr(fmt::format("BESS_STUDENT_STATES_EVALUATED INT64_C({})\n",
+                                    crowded_student().file().certificate.states_evaluated)));
   for (const int property : {1, 2, 3}) {
     EXPECT_THAT(header,
                 HasSubstr(fmt::format("BESS_STUDENT_VIOLATIONS_PROPERTY_{} 0\n", property)));
