@@ -13,7 +13,6 @@
 #include "workstation/data/market/feed/elia_fetch.h"
 #include "workstation/data/market/feed/market_files.h"
 #include "workstation/data/market/model/simulated_market.h"
-#include "workstation/data/market/series/checked_prices.h"
 #include "workstation/data/market/series/local_date.h"
 #include "workstation/data/market/series/plausibility.h"
 #include "workstation/data/market/statistics/market_statistics.h"

@@ -12,8 +12,8 @@
 #include "workstation/data/env/market_steps.h"
 #include "workstation/data/market/feed/day_ahead_rows.h"
 #include "workstation/data/market/feed/market_files.h"
-#include "workstation/data/market/series/checked_prices.h"
 #include "workstation/data/market/series/day_ahead.h"
+#include "workstation/data/market/series/plausibility.h"
 
 namespace bess {
 

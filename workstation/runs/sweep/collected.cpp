@@ -17,7 +17,7 @@
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/data/env/day_errors.h"
-#include "workstation/data/market/series/checked_prices.h"
+#include "workstation/data/market/series/plausibility.h"
 #include "workstation/runs/chain/chain_steps.h"
 #include "workstation/runs/run/run_record.h"
 #include "workstation/runs/run/run_report.h"

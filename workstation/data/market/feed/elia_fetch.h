@@ -14,7 +14,6 @@
 
 #include "shared/host/http_client.h"
 #include "workstation/data/market/feed/market_rows.h"
-#include "workstation/data/market/series/checked_prices.h"
 #include "workstation/data/market/series/local_date.h"
 
 namespace bess {

@@ -1,4 +1,4 @@
-#include "workstation/data/market/series/checked_prices.h"
+#include "workstation/data/market/series/plausibility.h"
 
 #include <fmt/format.h>
 

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -72,5 +73,42 @@ double day_ahead_correlation(const DayAheadSeries& day_ahead, const MinuteSeries
 /// The finding `shifted-day`, for at least 80 common days.
 std::vector<Finding> shifted_day_ahead(const DayAheadSeries& day_ahead,
                                        const MinuteSeries& settled);
+
+// Price input gate: implausible prices are errors with file and row. Warnings and accepted errors
+// are one line each on standard error.
+
+/// Names of accepted findings: their errors become warnings.
+class AcceptedFindings {
+ public:
+  AcceptedFindings() = default;
+  /// `list` is NAME[,NAME]; throws UserError for an unknown name.
+  explicit AcceptedFindings(std::string_view list);
+  /// For commands that only describe prices.
+  static AcceptedFindings all();
+  [[nodiscard]] bool accepts(std::string_view name) const;
+
+ private:
+  std::vector<std::string> names_;
+};
+
+/// Text of the prices, so that a finding can name the row.
+struct PriceText {
+  std::string name;
+  std::string_view text;
+};
+
+/// Throws UserError for the first error that is not accepted; prints the others, one per line.
+void judge(const std::vector<Finding>& findings, const AcceptedFindings& accepted,
+           const std::vector<PriceText>& texts);
+
+/// Row number of a time, counted from 1 with comments and header; 0 if not found.
+std::size_t row_of_time(std::string_view text, std::int64_t utc_s);
+
+/// Reads a minute file and checks it.
+MinuteSeries read_judged_minutes(const std::filesystem::path& path,
+                                 const AcceptedFindings& accepted);
+/// Checks the series of a minute file's text.
+void judge_minutes(const MinuteSeries& series, const PriceText& text,
+                   const AcceptedFindings& accepted);
 
 }  // namespace bess

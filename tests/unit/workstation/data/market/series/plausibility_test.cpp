@@ -9,7 +9,6 @@
 #include "tests/support/price_cases.h"
 #include "tests/support/tokens.h"
 #include "workstation/data/market/feed/market_files.h"
-#include "workstation/data/market/series/checked_prices.h"
 
 namespace bess {
 namespace {
