@@ -6,7 +6,7 @@
 #include "shared/host/user_error.h"
 #include "shared/local_time.h"
 #include "tests/checks/fuzz/fuzz_target.h"
-#include "workstation/data/market/feed/market_rows.h"
+#include "workstation/data/market/feed/market_files.h"
 
 namespace bess {
 

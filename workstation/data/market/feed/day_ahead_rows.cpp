@@ -14,7 +14,6 @@
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
 #include "workstation/data/market/feed/market_files.h"
-#include "workstation/data/market/feed/market_rows.h"
 
 namespace bess {
 namespace {

@@ -12,7 +12,6 @@
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 #include "workstation/base/progress.h"
-#include "workstation/data/market/feed/market_files.h"
 
 namespace bess {
 

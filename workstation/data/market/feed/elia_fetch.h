@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "shared/host/http_client.h"
-#include "workstation/data/market/feed/market_rows.h"
+#include "workstation/data/market/feed/market_files.h"
 #include "workstation/data/market/series/local_date.h"
 
 namespace bess {

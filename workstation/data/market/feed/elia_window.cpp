@@ -10,7 +10,6 @@
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
-#include "workstation/data/market/feed/market_files.h"
 
 namespace bess {
 namespace {

@@ -1,4 +1,4 @@
-#include "workstation/data/market/feed/market_rows.h"
+#include "workstation/data/market/feed/market_files.h"
 
 #include <algorithm>
 #include <array>

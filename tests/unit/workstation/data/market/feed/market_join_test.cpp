@@ -1,5 +1,4 @@
 // Joining rows: order, duplicates, gaps, and the replacement of a missing settled price.
-#include "workstation/data/market/feed/market_rows.h"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,4 @@
 // Market readers: every spelling of Elia's downloads, and one clear line for unreadable rows.
-#include "workstation/data/market/feed/market_rows.h"
 
 #include <gmock/gmock.h>
 
