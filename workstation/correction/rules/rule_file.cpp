@@ -48,8 +48,13 @@ class RuleReader {
     }
     read_members("months", rule_.box.months);
     read_members("context_classes", rule_.box.context_classes);
-    read_range_of_soc();
-    read_range_of_price();
+    read_soc("soc_min", rule_.box.soc_index_min);
+    read_soc("soc_max", rule_.box.soc_index_max);
+    refuse_reversed("soc_min", rule_.box.soc_index_min, "soc_max", rule_.box.soc_index_max);
+    read_price("price_min", rule_.box.price_min_eur_per_mwh);
+    read_price("price_max", rule_.box.price_max_eur_per_mwh);
+    refuse_reversed("price_min", rule_.box.price_min_eur_per_mwh, "price_max",
+                    rule_.box.price_max_eur_per_mwh);
     table_.boolean("enforce", rule_.enforce);
     read_demand();
     table_.finish();
@@ -113,28 +118,23 @@ class RuleReader {
     index = static_cast<std::int32_t>(std::lround(steps));
   }
 
-  void read_range_of_soc() {
-    read_soc("soc_min", rule_.box.soc_index_min);
-    read_soc("soc_max", rule_.box.soc_index_max);
-    if (rule_.box.soc_index_min > rule_.box.soc_index_max) {
-      table_.fail("soc_max", "is below soc_min: the rule would never apply");
-    }
-  }
-
   void read_price(std::string_view key, std::int32_t& price) {
     table_.integer(key, price, -kThresholdMaxEurPerMwh, kThresholdMaxEurPerMwh);
   }
 
-  void read_range_of_price() {
-    read_price("price_min", rule_.box.price_min_eur_per_mwh);
-    read_price("price_max", rule_.box.price_max_eur_per_mwh);
-    if (rule_.box.price_min_eur_per_mwh > rule_.box.price_max_eur_per_mwh) {
-      table_.fail("price_max", "is below price_min: the rule would never apply");
-    }
+  void refuse_reversed(std::string_view low_key, int low, std::string_view high_key, int high) {
+    if (low <= high) return;
+    table_.fail(high_key, fmt::format("is below {}: the rule would never apply", low_key));
   }
 
   void read_demand() {
-    if (table_.node("switches_max") != nullptr) return refuse_switches();
+    if (table_.node("switches_max") != nullptr) {  // of an earlier version
+      return table_.fail(
+          "switches_max",
+          "is no longer supported: by property 3 the action changes at most twice with the "
+          "price; for a single change without idling write is_not = \"idle\"; against "
+          "frequent changes use a dead band, is = \"idle\" with price_min and price_max");
+    }
     const DemandKind* kind = nullptr;
     std::string_view found;
     std::vector<std::string_view> keys;
@@ -152,14 +152,6 @@ class RuleReader {
     if (kind != nullptr) return kind->read(table_, found, rule_);
     table_.finish();  // reports a misspelt demand by its key
     table_.fail("", fmt::format("has no demand: add one of {}", fmt::join(keys, ", ")));
-  }
-
-  /// Key of an earlier version.
-  void refuse_switches() {
-    table_.fail("switches_max",
-                "is no longer supported: by property 3 the action changes at most twice with the "
-                "price; for a single change without idling write is_not = \"idle\"; against "
-                "frequent changes use a dead band, is = \"idle\" with price_min and price_max");
   }
 
   TomlTable& table_;
