@@ -474,37 +474,6 @@ MarketRows parse_market_text(std::string_view text, std::string_view name,
   return looks_like_json(text) ? parse_market_json(text, name) : parse_market_csv(text, name, own);
 }
 
-MarketRows read_market_files(const std::vector<std::string>& paths, const CustomCsvFormat& own) {
-  MarketRows all;
-  Overlap overlap;
-  for (const std::string& path : paths) {
-    const MarketRows rows = parse_market_text(read_file(path), path, own);
-    if (rows.is_minute_file) overlap.add(path, rows);
-    append_rows(all, rows);
-  }
-  all.findings = overlap.findings();
-  return all;
-}
-
-SettledQuarterHours read_quarter_hour_files(const std::vector<std::string>& paths) {
-  MarketRows rows = read_market_files(paths);
-  if (rows.quarter_hours.empty() && !rows.minutes.empty()) {
-    fail("{}: has minute rows without settled prices; use settled quarter-hours (ods047, ods134)",
-         fmt::join(paths, ", "));
-  }
-  if (rows.quarter_hours.empty()) fail("{}: has no rows", fmt::join(paths, ", "));
-  SettledQuarterHours settled;
-  settled.sources = rows.sources;
-  settled.sources.erase(MarketSource::kDrawn);  // the minutes will be redrawn
-  settled.minutes_unused = rows.minutes.size();
-  settled.report.findings = std::move(rows.findings);
-  settled.report.dual_priced_quarter_hours = rows.dual_priced_quarter_hours.size();
-  settled.quarter_hours = sorted_quarter_hours(std::move(rows.quarter_hours), settled.report);
-  check_span(settled.quarter_hours.front().utc_s, settled.quarter_hours.back().utc_s,
-             paths.front());
-  return settled;
-}
-
 std::string file_names(const std::vector<std::string>& paths) {
   std::vector<std::string> names;
   for (const std::string& path : paths) {

@@ -1,10 +1,13 @@
 #include "workstation/data/market/feed/market_files.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
+#include <unordered_map>
 
+#include "shared/host/file.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "shared/units_and_limits.h"
@@ -12,37 +15,55 @@
 
 namespace bess {
 
-void Overlap::add_price(Prices& known, const char* column, std::int64_t utc_s, double eur_per_mwh) {
-  if (!is_published(eur_per_mwh)) return;
-  const std::size_t file = names_.size() - 1;
-  const auto [found, is_new] = known.try_emplace(utc_s, Price{eur_per_mwh, file});
-  if (is_new || found->second.eur_per_mwh == eur_per_mwh || found->second.file == file) return;
-  if (disagreements_++ > 0) return;
-  first_ = {"overlap", true,
-            fmt::format("{} and {} disagree about {}: {} price {:g} and {:g}",
-                        names_[found->second.file], names_[file], utc_text(utc_s).view(), column,
-                        found->second.eur_per_mwh, eur_per_mwh),
-            utc_s};
-}
-
-void Overlap::add(const std::string& name, const MarketRows& rows) {
-  names_.push_back(name);
-  for (const MinuteRow& row : rows.minutes) {
-    add_price(minutes_, "indicative", row.utc_s, row.indicative_eur_per_mwh);
-  }
-  for (const QuarterHour& row : rows.quarter_hours) {
-    add_price(quarter_hours_, "settled", row.utc_s, row.price_eur_per_mwh);
-  }
-}
-
-std::vector<Finding> Overlap::findings() const {
-  if (disagreements_ == 0) return {};
-  Finding finding = first_;
-  finding.what += fmt::format(" ({} in all); remove one", counted(disagreements_, "difference"));
-  return {finding};
-}
-
 namespace {
+
+/// Joined minute files must agree where they overlap, because both claim to be the market.
+/// Downloads differ: a later one corrects an earlier one.
+class Overlap {
+ public:
+  /// Compares the rows of a minute file with those of the previous files.
+  void add(const std::string& name, const MarketRows& rows) {
+    names_.push_back(name);
+    for (const MinuteRow& row : rows.minutes) {
+      add_price(minutes_, "indicative", row.utc_s, row.indicative_eur_per_mwh);
+    }
+    for (const QuarterHour& row : rows.quarter_hours) {
+      add_price(quarter_hours_, "settled", row.utc_s, row.price_eur_per_mwh);
+    }
+  }
+  /// One error if any two disagree, otherwise none.
+  [[nodiscard]] std::vector<Finding> findings() const {
+    if (disagreements_ == 0) return {};
+    Finding finding = first_;
+    finding.what += fmt::format(" ({} in all); remove one", counted(disagreements_, "difference"));
+    return {finding};
+  }
+
+ private:
+  struct Price {
+    double eur_per_mwh;
+    std::size_t file;  ///< index into names_
+  };
+  using Prices = std::unordered_map<std::int64_t, Price>;
+
+  void add_price(Prices& known, const char* column, std::int64_t utc_s, double eur_per_mwh) {
+    if (!is_published(eur_per_mwh)) return;
+    const std::size_t file = names_.size() - 1;
+    const auto [found, is_new] = known.try_emplace(utc_s, Price{eur_per_mwh, file});
+    if (is_new || found->second.eur_per_mwh == eur_per_mwh || found->second.file == file) return;
+    if (disagreements_++ > 0) return;
+    first_ = {"overlap", true,
+              fmt::format("{} and {} disagree about {}: {} price {:g} and {:g}",
+                          names_[found->second.file], names_[file], utc_text(utc_s).view(), column,
+                          found->second.eur_per_mwh, eur_per_mwh),
+              utc_s};
+  }
+
+  std::vector<std::string> names_;
+  Prices minutes_, quarter_hours_;
+  std::size_t disagreements_ = 0;
+  Finding first_{};
+};
 
 /// A series is dense: a wrong date must not allocate centuries.
 constexpr std::int64_t kSpanSecondsMax = 40LL * 366 * kSecondsPerDay;
@@ -111,13 +132,14 @@ Span span_of(const std::vector<MinuteRow>& minutes, const std::vector<QuarterHou
   return span;
 }
 
-}  // namespace
-
+/// Throws UserError if the rows are too far apart for a dense series.
 void check_span(std::int64_t from_utc_s, std::int64_t until_utc_s, std::string_view name) {
   if (until_utc_s - from_utc_s <= kSpanSecondsMax) return;
   fail("{}: the rows span {} to {}, more than 40 years; correct the wrong date", name,
        utc_text(from_utc_s).view(), utc_text(until_utc_s).view());
 }
+
+}  // namespace
 
 std::vector<QuarterHour> sorted_quarter_hours(std::vector<QuarterHour> rows, JoinReport& report) {
   return without_duplicates(
@@ -154,6 +176,37 @@ JoinedMarket join_market(MarketRows rows, std::string_view name) {
     fail("{}: has rows without any price; choose other days", name);
   }
   return market;
+}
+
+MarketRows read_market_files(const std::vector<std::string>& paths, const CustomCsvFormat& own) {
+  MarketRows all;
+  Overlap overlap;
+  for (const std::string& path : paths) {
+    const MarketRows rows = parse_market_text(read_file(path), path, own);
+    if (rows.is_minute_file) overlap.add(path, rows);
+    append_rows(all, rows);
+  }
+  all.findings = overlap.findings();
+  return all;
+}
+
+SettledQuarterHours read_quarter_hour_files(const std::vector<std::string>& paths) {
+  MarketRows rows = read_market_files(paths);
+  if (rows.quarter_hours.empty() && !rows.minutes.empty()) {
+    fail("{}: has minute rows without settled prices; use settled quarter-hours (ods047, ods134)",
+         fmt::join(paths, ", "));
+  }
+  if (rows.quarter_hours.empty()) fail("{}: has no rows", fmt::join(paths, ", "));
+  SettledQuarterHours settled;
+  settled.sources = rows.sources;
+  settled.sources.erase(MarketSource::kDrawn);  // the minutes will be redrawn
+  settled.minutes_unused = rows.minutes.size();
+  settled.report.findings = std::move(rows.findings);
+  settled.report.dual_priced_quarter_hours = rows.dual_priced_quarter_hours.size();
+  settled.quarter_hours = sorted_quarter_hours(std::move(rows.quarter_hours), settled.report);
+  check_span(settled.quarter_hours.front().utc_s, settled.quarter_hours.back().utc_s,
+             paths.front());
+  return settled;
 }
 
 std::string describe_dual_priced(const JoinReport& report) {
