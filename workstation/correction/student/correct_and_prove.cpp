@@ -69,33 +69,24 @@ void note_checkpoints(const std::vector<Candidate>& candidates, std::size_t chos
       [](const StudentCheckpoint& a, const StudentCheckpoint& b) { return a.epoch < b.epoch; });
 }
 
-/// Check of the states that decide a monotone student.
-struct CornerCheck {
-  std::vector<LatticeState> states;  ///< with a violation
-  ProofRound round;                  ///< number by demand
-};
-
-/// Contexts in which a monotone student violates a rule, checked at the corners of its box; for a
+/// States in which a monotone student violates a rule, checked at the corners of its box; for a
 /// threshold at its price. Fast, where a proof takes seconds.
-CornerCheck check_corners(const StudentNet& net, const DistilOptions& options,
+Certificate check_corners(const StudentNet& net, const DistilOptions& options,
                           const RuleSamples& rules) {
   Certificate found{.thresholds = options.correction.thresholds, .rules = options.rules};
   for (const Rule& rule : found.demands().rules) {
     found.counts.push_back({binds_student(rule, net.context.kind)});
   }
-  CornerCheck corners_found;
   std::vector<ConstraintState> corners;
   for (int c = 0; c < kContextCount; ++c) {
     rules.corners(context_at(c), corners);
     for (const ConstraintState& corner : corners) {
       if (allows(corner.actions, net.decide(corner.state))) continue;
-      corners_found.states.push_back(corner.state);
+      found.counterexamples.push_back(corner.state);
       ++found.counts[corner.rule].violations;
     }
   }
-  corners_found.round = round_of(found);
-  corners_found.round.is_whole = false;
-  return corners_found;
+  return found;
 }
 
 /// Reports each round with an estimate of the remaining time.
@@ -159,7 +150,7 @@ CorrectionResult construct_and_prove(const Teacher& teacher, const Matrix& visit
     std::ranges::stable_sort(candidates, std::ranges::greater{}, &Candidate::score);
     if (candidates.empty()) break;  // interrupted
     const auto obedient = std::ranges::find_if(candidates, [&](const Candidate& candidate) {
-      return check_corners(candidate.net, options, rules).states.empty();
+      return check_corners(candidate.net, options, rules).counterexamples.empty();
     });
     const bool is_last = round + 1 == reporter.most();
     if (chooses) {
@@ -167,9 +158,11 @@ CorrectionResult construct_and_prove(const Teacher& teacher, const Matrix& visit
                        static_cast<int>(round) + 1, result.checkpoints);
     }
     if (obedient == candidates.end() && !is_last) {
-      CornerCheck corners_found = check_corners(candidates.front().net, options, rules);
-      counterexamples = std::move(corners_found.states);
-      reporter.add(std::move(corners_found.round), result.rounds);
+      Certificate found = check_corners(candidates.front().net, options, rules);
+      counterexamples = std::move(found.counterexamples);
+      ProofRound corners = round_of(found);
+      corners.is_whole = false;
+      reporter.add(std::move(corners), result.rounds);
       continue;
     }
     const Candidate& taken = obedient == candidates.end() ? candidates.front() : *obedient;
