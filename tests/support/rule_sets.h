@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "workstation/correction/rules/rule_file.h"
+#include "workstation/correction/rules/rule.h"
 
 namespace bess {
 

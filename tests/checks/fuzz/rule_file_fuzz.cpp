@@ -1,8 +1,8 @@
 // Rule files of an operator.
 #include "shared/host/user_error.h"
 #include "tests/checks/fuzz/fuzz_target.h"
+#include "workstation/correction/rules/rule.h"
 #include "workstation/correction/rules/rule_conflicts.h"
-#include "workstation/correction/rules/rule_file.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace bess;

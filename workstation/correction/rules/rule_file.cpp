@@ -1,4 +1,4 @@
-#include "workstation/correction/rules/rule_file.h"
+#include "workstation/correction/rules/rule.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

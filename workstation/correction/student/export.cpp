@@ -16,7 +16,6 @@
 #include "shared/soc_latches.h"
 #include "shared/training_period.h"
 #include "workstation/base/random.h"
-#include "workstation/correction/rules/rule_file.h"
 
 namespace bess {
 

@@ -18,7 +18,6 @@
 #include "shared/outlook/exported_outlook.h"
 #include "shared/utc_text.h"
 #include "workstation/correction/distillation/distil.h"
-#include "workstation/correction/rules/rule_file.h"
 
 namespace bess {
 

@@ -4,8 +4,8 @@
 
 #include <memory>
 
+#include "workstation/correction/rules/rule.h"
 #include "workstation/correction/rules/rule_conflicts.h"
-#include "workstation/correction/rules/rule_file.h"
 #include "workstation/correction/rules/ruled_policy.h"
 #include "workstation/correction/student/prove.h"
 #include "workstation/correction/student/student_policy.h"

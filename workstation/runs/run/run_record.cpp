@@ -12,7 +12,7 @@
 #include "shared/host/json_reader.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
-#include "workstation/correction/rules/rule_file.h"
+#include "workstation/correction/rules/rule.h"
 
 namespace bess {
 namespace {

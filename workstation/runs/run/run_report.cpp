@@ -16,7 +16,7 @@
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
 #include "workstation/base/answer.h"
-#include "workstation/correction/rules/rule_file.h"
+#include "workstation/correction/rules/rule.h"
 #include "workstation/correction/rules/ruled_policy.h"
 #include "workstation/correction/student/certificate.h"
 #include "workstation/correction/student/student_policy.h"

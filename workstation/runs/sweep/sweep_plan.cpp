@@ -16,7 +16,7 @@
 #include "shared/host/toml_reader.h"
 #include "shared/host/user_error.h"
 #include "workstation/base/binary_file.h"
-#include "workstation/correction/rules/rule_file.h"
+#include "workstation/correction/rules/rule.h"
 #include "workstation/runs/chain/chain_steps.h"
 #include "workstation/runs/chain/run_config.h"
 #include "workstation/runs/run/run_backtest.h"

@@ -1,5 +1,5 @@
 // Rule file: accepted keys, written rules, and refusals with their corrections.
-#include "workstation/correction/rules/rule_file.h"
+#include "workstation/correction/rules/rule.h"
 
 #include <gmock/gmock.h>
 

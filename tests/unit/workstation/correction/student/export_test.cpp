@@ -13,7 +13,7 @@
 #include "tests/support/proved_students.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
-#include "workstation/correction/rules/rule_file.h"
+#include "workstation/correction/rules/rule.h"
 
 namespace bess {
 namespace {

@@ -10,7 +10,6 @@
 #include "tests/support/user_error_of.h"
 #include "workstation/correction/distillation/monotone_distil.h"
 #include "workstation/correction/rules/rule.h"
-#include "workstation/correction/rules/rule_file.h"
 #include "workstation/correction/student/correct_and_prove.h"
 #include "workstation/correction/student/student_file.h"
 #include "workstation/correction/student/student_policy.h"

@@ -6,7 +6,7 @@
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "tests/unit/workstation/report/report_test_support.h"
-#include "workstation/correction/rules/rule_file.h"
+#include "workstation/correction/rules/rule.h"
 #include "workstation/correction/student/certificate.h"
 #include "workstation/correction/student/student_policy.h"
 #include "workstation/report/headline.h"
