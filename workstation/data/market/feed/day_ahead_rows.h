@@ -11,7 +11,6 @@
 #include <string_view>
 #include <vector>
 
-#include "shared/host/day_ahead_rows.h"
 #include "workstation/data/market/series/day_ahead.h"
 #include "workstation/data/market/series/plausibility.h"
 

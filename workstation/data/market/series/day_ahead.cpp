@@ -74,7 +74,7 @@ constexpr std::string_view kHeader =
 /// Gaps are stored, so a wrong date must not allocate centuries.
 constexpr std::int64_t kQuarterHoursMax = 40LL * 366 * 96;
 
-DayAheadPrice parse_row(std::string_view line, std::string_view name, std::size_t line_number) {
+DayAheadRow parse_row(std::string_view line, std::string_view name, std::size_t line_number) {
   const auto bad = [&](std::string_view what) -> void {
     fail("{}:{}: {}: \"{}\"; expected e.g. 2025-06-01T10:00:00Z,41.5,60,", name, line_number, what,
          one_line(line, 80));
@@ -84,7 +84,7 @@ DayAheadPrice parse_row(std::string_view line, std::string_view name, std::size_
   const bool four = fields.take(time) && fields.take(price) && fields.take(resolution) &&
                     fields.take(published) && !fields.take(more);
   if (!four) bad("not four columns");
-  DayAheadPrice row{};
+  DayAheadRow row{};
   if (!parse_utc(time, row.utc_s, kAlsoBlank) || row.utc_s % kSecondsPerQuarterHour != 0) {
     bad("not the UTC start of a quarter-hour");
   }
@@ -103,7 +103,7 @@ DayAheadPrice parse_row(std::string_view line, std::string_view name, std::size_
 
 }  // namespace
 
-bool append_day_ahead(DayAheadSeries& series, const DayAheadPrice& price) {
+bool append_day_ahead(DayAheadSeries& series, const DayAheadRow& price) {
   if (series.size() == 0) series.start_utc_s = price.utc_s;
   const std::int64_t index = (price.utc_s - series.start_utc_s) / kSecondsPerQuarterHour;
   if (index < static_cast<std::int64_t>(series.size()) || index >= kQuarterHoursMax) return false;

@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "shared/host/day_ahead_rows.h"
 #include "workstation/data/market/series/local_date.h"
 
 namespace bess {
@@ -31,16 +32,9 @@ struct DayAheadSeries {
   [[nodiscard]] std::int64_t end_utc_s() const { return utc_s(size()); }
 };
 
-struct DayAheadPrice {
-  std::int64_t utc_s;
-  double eur_per_mwh;
-  int resolution_min;
-  std::int64_t published_utc_s = 0;
-};
-
 /// Appends a price; the quarter-hours before it are missing. False without effect if it is not
 /// after the last one or more than 40 years after the first.
-bool append_day_ahead(DayAheadSeries& series, const DayAheadPrice& price);
+bool append_day_ahead(DayAheadSeries& series, const DayAheadRow& price);
 
 /// Whether the text has a day-ahead file's header.
 bool is_day_ahead_csv(std::string_view text);

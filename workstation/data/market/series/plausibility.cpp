@@ -7,7 +7,6 @@
 #include <map>
 #include <span>
 
-#include "shared/host/day_ahead_rows.h"
 #include "shared/host/text.h"
 #include "shared/local_time.h"
 #include "shared/units_and_limits.h"

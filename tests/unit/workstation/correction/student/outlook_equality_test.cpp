@@ -24,12 +24,12 @@ MarketSteps market_of(const OutlookInputs& inputs) {
     minutes.settled.push_back(50);
   }
   DayAheadSeries ahead;
-  std::map<std::int64_t, DayAheadPrice> by_time;
+  std::map<std::int64_t, DayAheadRow> by_time;
   for (const DrawnAnswer& answer : inputs.answers) {
     for (std::size_t q = 0; q < answer.centi.size(); ++q) {
       const std::int64_t t =
           answer.first_utc_s + static_cast<std::int64_t>(q) * kSecondsPerQuarterHour;
-      by_time.try_emplace(t, DayAheadPrice{t, eur(answer.centi[q]), 15, answer.received_utc_s});
+      by_time.try_emplace(t, DayAheadRow{t, eur(answer.centi[q]), 15, answer.received_utc_s});
     }
   }
   for (const auto& [t, price] : by_time) EXPECT_TRUE(append_day_ahead(ahead, price));
