@@ -25,12 +25,8 @@ bool holds_at(const Rule& rule, ContextKind kind, const LatticeState& s) {
              .contains(s.soc_index, s.price_eur_per_mwh - kLatticePriceMinEurPerMwh);
 }
 
-struct Example {
-  LatticeState state;
-  std::string text;
-};
-
-std::optional<Example> example_of(const StudentFile& student, const Rule& rule) {
+/// No effect if no state that violates the rule is known.
+void add_example(const StudentFile& student, const Rule& rule, BrokenDemand& demand) {
   const StudentNet& net = student.net;
   const ContextKind kind = net.context.kind;
   RuleCount known;
@@ -40,9 +36,11 @@ std::optional<Example> example_of(const StudentFile& student, const Rule& rule) 
   const std::optional<RuleInput> along = rule.demand->pairs_along();
   if (!along) {
     const auto worst = worst_state(net, rule, known);
-    if (!worst) return {};
-    return Example{worst->state, fmt::format("{} at {}", action_name(worst->action),
-                                             state_text(worst->state, kind))};
+    if (!worst) return;
+    demand.state = worst->state;
+    demand.example =
+        fmt::format("{} at {}", action_name(worst->action), state_text(worst->state, kind));
+    return;
   }
   for (const LatticeState& state : known.counterexamples) {
     const auto next = next_state(state, *along);
@@ -50,11 +48,12 @@ std::optional<Example> example_of(const StudentFile& student, const Rule& rule) 
     const Action here = net.decide(state);
     const Action there = net.decide(*next);
     if (!rule.demand->is_broken(here, there)) continue;
-    return Example{state,
-                   fmt::format("{} at {}, and {} at {}", action_name(here), state_text(state, kind),
-                               action_name(there), state_text(*next, kind))};
+    demand.state = state;
+    demand.example =
+        fmt::format("{} at {}, and {} at {}", action_name(here), state_text(state, kind),
+                    action_name(there), state_text(*next, kind));
+    return;
   }
-  return {};
 }
 
 std::string room_text(const Opposite& opposite) {
@@ -97,16 +96,11 @@ std::vector<BrokenDemand> broken_demands(const StudentFile& student, CorrectionM
   std::vector<BrokenDemand> broken;
   for (const DemandCount& count : demand_counts(student.certificate)) {
     if (count.violations == 0) continue;
-    std::optional<Example> example;
-    for (const Rule& rule : count.rules) {
-      if (!example) example = example_of(student, rule);
-    }
     BrokenDemand demand{
         count, "",
         advice_of(student.certificate, student.net.context.kind, count.rules.front(), method)};
-    if (example) {
-      demand.example = example->text;
-      demand.state = example->state;
+    for (const Rule& rule : count.rules) {
+      if (!demand.state) add_example(student, rule, demand);
     }
     broken.push_back(std::move(demand));
   }
