@@ -115,20 +115,20 @@ void check_each(const RuleSet& rules, ContextKind kind) {
 
 }  // namespace
 
-void ImpliedRanges::add_bound(const Rule& rule, std::size_t index, Side side, Action action,
+void ImpliedRanges::add_bound(const Rule& rule, std::size_t index, BoundSide side, Action action,
                               const std::vector<Direction>& directions, ContextKind kind) {
   ImpliedBound bound{
       side, action, 0, index, lattice_box_of(rule.box, kind), quarter_hours_of(rule.box)};
   for (int a = 0; a < kActionCount; ++a) {
     const auto other = static_cast<Action>(a);
-    const bool is_allowed = side == Side::kAtLeast  ? other >= action
-                            : side == Side::kAtMost ? other <= action
-                                                    : other != action;
+    const bool is_allowed = side == BoundSide::kAtLeast  ? other >= action
+                            : side == BoundSide::kAtMost ? other <= action
+                                                         : other != action;
     if (is_allowed) bound.allowed = static_cast<ActionSet>(bound.allowed | action_bit(other));
   }
   for (const Direction& direction : directions) {
-    if (side == Side::kNotIdle) break;  // implies nothing for other states
-    const bool at_least = side == Side::kAtLeast;
+    if (side == BoundSide::kNotIdle) break;  // implies nothing for other states
+    const bool at_least = side == BoundSide::kAtLeast;
     LatticeBox& box = bound.box;
     if (direction.input == RuleInput::kPrice) {
       reach(direction.sign, at_least, box.price_first, box.price_last, 0, kPriceCount - 1);
@@ -156,12 +156,12 @@ ImpliedRanges::ImpliedRanges(const RuleSet& rules, ContextKind kind) {
   for (std::size_t i = 0; i < rules.rules.size(); ++i) {
     const Rule& rule = rules.rules[i];
     if (!binds_student(rule, kind)) continue;
-    if (rule.has_gap()) add_bound(rule, i, Side::kNotIdle, Action::kIdle, directions, kind);
+    if (rule.has_gap()) add_bound(rule, i, BoundSide::kNotIdle, Action::kIdle, directions, kind);
     if (rule.lowest() > Action::kDischarge) {
-      add_bound(rule, i, Side::kAtLeast, rule.lowest(), directions, kind);
+      add_bound(rule, i, BoundSide::kAtLeast, rule.lowest(), directions, kind);
     }
     if (rule.highest() < Action::kCharge) {
-      add_bound(rule, i, Side::kAtMost, rule.highest(), directions, kind);
+      add_bound(rule, i, BoundSide::kAtMost, rule.highest(), directions, kind);
     }
   }
 }
@@ -197,8 +197,6 @@ void require_consistent(const RuleSet& rules, const PriceThresholds& thresholds,
   }
   const RuleSet all = with_thresholds(rules, thresholds);
   const ImpliedRanges implied(all, kind);
-  using ImpliedBound = ImpliedRanges::ImpliedBound;
-  using Side = ImpliedRanges::Side;
   // Corner of the common states of the bounds; each such set is a box, or hours and classes of
   // boxes.
   const auto meet = [kind](std::initializer_list<const ImpliedBound*> bounds, std::string& state) {
@@ -221,16 +219,16 @@ void require_consistent(const RuleSet& rules, const PriceThresholds& thresholds,
     return true;
   };
   std::string state;
-  for (const ImpliedBound& least : implied.bounds_) {
-    if (least.side != Side::kAtLeast) continue;
-    for (const ImpliedBound& most : implied.bounds_) {
-      if (most.side != Side::kAtMost) continue;
+  for (const ImpliedBound& least : implied.bounds()) {
+    if (least.side != BoundSide::kAtLeast) continue;
+    for (const ImpliedBound& most : implied.bounds()) {
+      if (most.side != BoundSide::kAtMost) continue;
       const Rule& a = all.rules[least.rule];
       const Rule& b = all.rules[most.rule];
       if (least.action > most.action && meet({&least, &most}, state)) clash(a, b, state);
       if (least.action != Action::kIdle || most.action != Action::kIdle) continue;
-      for (const ImpliedBound& gap : implied.bounds_) {
-        if (gap.side != Side::kNotIdle || !meet({&least, &most, &gap}, state)) continue;
+      for (const ImpliedBound& gap : implied.bounds()) {
+        if (gap.side != BoundSide::kNotIdle || !meet({&least, &most, &gap}, state)) continue;
         clash(all.rules[gap.rule], least.rule == most.rule ? a : b, state);
       }
     }
@@ -241,8 +239,6 @@ std::optional<Opposite> nearest_opposite(const RuleSet& rules, const PriceThresh
                                          ContextKind kind, const Rule& rule) {
   const RuleSet all = with_thresholds(rules, thresholds);
   const ImpliedRanges implied(all, kind);
-  using ImpliedBound = ImpliedRanges::ImpliedBound;
-  using Side = ImpliedRanges::Side;
   const auto is_asked = [&](const ImpliedBound& bound) {
     const Rule& other = all.rules[bound.rule];
     return other.box == rule.box && other.actions() == rule.actions();
@@ -251,9 +247,9 @@ std::optional<Opposite> nearest_opposite(const RuleSet& rules, const PriceThresh
     return (a.box.classes & b.box.classes) != 0 && (a.quarter_hours & b.quarter_hours).any();
   };
   std::optional<Opposite> nearest;
-  for (const ImpliedBound& least : implied.bounds_) {
-    for (const ImpliedBound& most : implied.bounds_) {
-      if (least.side != Side::kAtLeast || most.side != Side::kAtMost ||
+  for (const ImpliedBound& least : implied.bounds()) {
+    for (const ImpliedBound& most : implied.bounds()) {
+      if (least.side != BoundSide::kAtLeast || most.side != BoundSide::kAtMost ||
           least.action <= most.action || is_asked(least) == is_asked(most) ||
           !meet_in_time(least, most)) {
         continue;

@@ -29,6 +29,17 @@ struct Opposite {
 std::optional<Opposite> nearest_opposite(const RuleSet& rules, const PriceThresholds& thresholds,
                                          ContextKind kind, const Rule& rule);
 
+enum class BoundSide : std::uint8_t { kAtLeast, kAtMost, kNotIdle };
+/// One side of a demand with all states for which it implies a bound.
+struct ImpliedBound {
+  BoundSide side;
+  Action action;
+  ActionSet allowed;
+  std::size_t rule;  ///< index
+  LatticeBox box;
+  std::bitset<kQuarterHourCount> quarter_hours;
+};
+
 /// Actions allowed at a lattice state by all rules that bind a student, directions included, for
 /// training and evaluation. Keeps no reference to `rules`.
 class ImpliedRanges {
@@ -36,23 +47,10 @@ class ImpliedRanges {
   ImpliedRanges(const RuleSet& rules, ContextKind kind);
   [[nodiscard]] ActionSet at(int quarter_hour, int context_class, int soc_index,
                              int price_eur_per_mwh) const;
+  [[nodiscard]] const std::vector<ImpliedBound>& bounds() const { return bounds_; }
 
  private:
-  friend void require_consistent(const RuleSet&, const PriceThresholds&, ContextKind);
-  friend std::optional<Opposite> nearest_opposite(const RuleSet&, const PriceThresholds&,
-                                                  ContextKind, const Rule&);
-
-  enum class Side : std::uint8_t { kAtLeast, kAtMost, kNotIdle };
-  /// One side of a demand with all states for which it implies a bound.
-  struct ImpliedBound {
-    Side side;
-    Action action;
-    ActionSet allowed;
-    std::size_t rule;  ///< index
-    LatticeBox box;
-    std::bitset<kQuarterHourCount> quarter_hours;
-  };
-  void add_bound(const Rule& rule, std::size_t index, Side side, Action action,
+  void add_bound(const Rule& rule, std::size_t index, BoundSide side, Action action,
                  const std::vector<Direction>& directions, ContextKind kind);
 
   std::vector<ImpliedBound> bounds_;
