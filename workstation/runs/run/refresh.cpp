@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <ctime>
 #include <map>
 #include <optional>
 
@@ -13,8 +15,8 @@
 #include "workstation/correction/student/student_policy.h"
 #include "workstation/data/env/evaluate.h"
 #include "workstation/runs/chain/chain_steps.h"
+#include "workstation/runs/chain/common_options.h"
 #include "workstation/runs/chain/folder_lock.h"
-#include "workstation/runs/chain/price_input.h"
 #include "workstation/runs/run/run_backtest.h"
 #include "workstation/runs/run/run_report.h"
 #include "workstation/runs/run/run_stages.h"
@@ -146,8 +148,8 @@ std::optional<FoldDays> fold_of(const MarketSteps& market, const std::string& la
 
 class Refresh {
  public:
-  Refresh(const RefreshRequest& request, std::FILE* messages)
-      : request_(request), messages_(messages), run_{fs::weakly_canonical(request.run)} {
+  explicit Refresh(const RefreshRequest& request)
+      : request_(request), run_{fs::weakly_canonical(request.run)} {
     if (!run_.path.has_filename()) run_.path = run_.path.parent_path();  // trailing slash
     candidate_ = {sibling("proposal")};
   }
@@ -174,8 +176,8 @@ class Refresh {
  private:
   template <typename... Args>
   void report_line(fmt::format_string<Args...> format, Args&&... args) const {
-    fmt::print(messages_, format, std::forward<Args>(args)...);
-    std::fflush(messages_);
+    fmt::print(format, std::forward<Args>(args)...);
+    std::fflush(stdout);
   }
 
   [[nodiscard]] fs::path sibling(const std::string& what) const {
@@ -201,7 +203,7 @@ class Refresh {
     }
     const MinuteSeries series = read_minute_file(candidate_.file(kMarket));
     end_when_interrupted("finished stages are kept: repeat the command to continue");
-    RunStages stages(candidate_, *record, series, messages_);
+    RunStages stages(candidate_, *record, series, stdout);
     const FoldDays days = *parse_fold_days(record->value(kFoldKey));
     Json json = Json::object(
         {{"against", file_mark(run_.file(kStudent))}, {"last_day", format_local_date(days.last)}});
@@ -218,10 +220,63 @@ class Refresh {
     return true;
   }
 
+  /// Past days that a candidate may need, and ten for the price level to settle.
+  [[nodiscard]] FetchSpan fetched_span() const {
+    constexpr int kSettlingDays = 10;
+    const LocalDate yesterday = add_days(local_date_of(std::time(nullptr)), -1);
+    return {add_days(yesterday, -kJudgedDays - request_.window_days - kSettlingDays), yesterday};
+  }
+
+  void provide_prices(const fs::path& out) const {
+    if (!request_.prices.empty()) {
+      return write_minute_file(out, request_.price_input.read_joined(request_.prices).series,
+                               "From " + file_names(request_.prices));
+    }
+    watch_interruption();
+    const auto fetched = fetch_prices({.span = fetched_span(),
+                                       .out = out,
+                                       .base_url = checked_base_url(request_.source, "--base-url"),
+                                       .now_utc_s = std::time(nullptr),
+                                       .retry = {},
+                                       .allow_gaps = true,  // incomplete days are skipped
+                                       .accepted = request_.price_input.accepted(),
+                                       .sleep = sleep_unless},
+                                      interruption());
+    if (!fetched) throw Interrupted{};
+    fmt::print("{}", fetched->description);
+  }
+
+  void fetch_day_ahead_to(const fs::path& out) const {
+    watch_interruption();
+    const std::string url = checked_base_url(request_.day_ahead_source, "--day-ahead-base-url");
+    const auto fetched = fetch_day_ahead({.span = fetched_span(),
+                                          .base_url = url,
+                                          .now_utc_s = std::time(nullptr),
+                                          .retry = {},
+                                          .allow_gaps = true,
+                                          .sleep = sleep_unless},
+                                         interruption());
+    if (!fetched) throw Interrupted{};
+    write_day_ahead_file(out, fetched->series, "Day-ahead prices fetched from " + url);
+  }
+
+  void provide_day_ahead(const fs::path& out, const MinuteSeries& settled) const {
+    if (!request_.day_ahead.path.empty()) {
+      write_file(out, read_file(request_.day_ahead.path));
+    } else if (request_.prices.empty()) {
+      fetch_day_ahead_to(out);
+    } else {
+      fail(
+          "the run plans on day-ahead prices: with --prices, also give their file with "
+          "--day-ahead");
+    }
+    (void)read_day_ahead(out, settled, request_.price_input.accepted(), kDayAheadPublishedMin);
+  }
+
   /// Provides prices and creates the record of the candidate; none without new days.
   [[nodiscard]] std::optional<RunRecord> begin(const RunRecord& present) const {
     const RunConfig config = present.config(run_);
-    request_.provide_prices(candidate_.file(kMarket));
+    provide_prices(candidate_.file(kMarket));
     const MinuteSeries series = read_minute_file(candidate_.file(kMarket));
     const MarketSteps market = market_of(series, config.market, "these prices");
     const std::string learnt = present.figures->last_learnt_day;
@@ -255,7 +310,7 @@ class Refresh {
     if (is_lean) record.identity.emplace_back(kStagesKey, kLean);
     if (config.train.context != ContextKind::kOutlook) return record;
     record.day_ahead = kDayAhead;
-    request_.provide_day_ahead(candidate_.file(kDayAhead), series);
+    provide_day_ahead(candidate_.file(kDayAhead), series);
     record.identity.emplace_back(kDayAheadKey, file_mark(candidate_.file(kDayAhead)));
     return record;
   }
@@ -288,14 +343,11 @@ class Refresh {
   }
 
   const RefreshRequest& request_;
-  std::FILE* messages_;
   RunFolder run_, candidate_;
 };
 
 }  // namespace
 
-void refresh(const RefreshRequest& request, std::FILE* messages) {
-  Refresh(request, messages).go();
-}
+void refresh(const RefreshRequest& request) { Refresh(request).go(); }
 
 }  // namespace bess

@@ -10,16 +10,15 @@
 // by the next one, with the same bytes as result.
 #pragma once
 
-#include <cstdio>
-#include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "shared/action.h"
-#include "shared/host/minute_file.h"
 #include "workstation/correction/student/student_file.h"
 #include "workstation/data/env/evaluate.h"
+#include "workstation/data/market/feed/day_ahead_fetch.h"
+#include "workstation/data/market/feed/elia_fetch.h"
+#include "workstation/runs/chain/price_input.h"
 #include "workstation/runs/chain/run_config.h"
 
 namespace bess {
@@ -59,16 +58,17 @@ inline constexpr int kJudgedDays = 30;
 inline constexpr int kJudgedDaysMin = 14;
 
 struct RefreshRequest {
-  std::filesystem::path run;
-  int window_days;
+  std::string run;
+  int window_days = 365;
   bool adopt = false;
-  /// Write the latest prices as a minute file and, for a run by outlook, checked day-ahead prices.
-  std::function<void(const std::filesystem::path& out)> provide_prices;
-  std::function<void(const std::filesystem::path& out, const MinuteSeries& settled)>
-      provide_day_ahead;
+  std::vector<std::string> prices;  ///< empty: download the latest prices
+  PriceInput price_input;
+  DayAheadInput day_ahead;            ///< for a run by outlook, with `prices`
+  std::string source = kEliaBaseUrl;  ///< of downloaded prices
+  std::string day_ahead_source = kEnergyChartsBaseUrl;
 };
 
-/// Progress and results go to `messages`. Throws UserError.
-void refresh(const RefreshRequest& request, std::FILE* messages);
+/// Progress and results go to stdout. Throws UserError.
+void refresh(const RefreshRequest& request);
 
 }  // namespace bess
