@@ -64,10 +64,17 @@ void require_distinct(const std::vector<NamedPath>& outputs, const std::vector<N
   }
 }
 
-std::vector<NamedPath> named_paths(const std::string& option,
-                                   const std::vector<std::string>& paths) {
+std::vector<NamedPath> named_paths(const std::string& option, const std::vector<std::string>& paths,
+                                   const std::vector<NamedPath>& others) {
+  std::vector<NamedPath> named = named_files(option, {}, paths);
+  named.insert(named.end(), others.begin(), others.end());
+  return named;
+}
+
+std::vector<NamedPath> named_files(const std::string& option, const std::filesystem::path& folder,
+                                   const std::vector<std::string>& names) {
   std::vector<NamedPath> named;
-  for (const std::string& path : paths) named.push_back({option, path});
+  for (const std::string& name : names) named.push_back({option, folder / name});
   return named;
 }
 

@@ -22,9 +22,13 @@ struct NamedPath {
 /// another spelling. Devices and pipes may be used several times.
 void require_distinct(const std::vector<NamedPath>& outputs, const std::vector<NamedPath>& inputs);
 
-/// One option given several times.
-std::vector<NamedPath> named_paths(const std::string& option,
-                                   const std::vector<std::string>& paths);
+/// One option given several times, and `others`.
+std::vector<NamedPath> named_paths(const std::string& option, const std::vector<std::string>& paths,
+                                   const std::vector<NamedPath>& others = {});
+
+/// Files in the folder that an option names.
+std::vector<NamedPath> named_files(const std::string& option, const std::filesystem::path& folder,
+                                   const std::vector<std::string>& names);
 
 // Unfinished temporary files, removed by a signal that ends the program.
 

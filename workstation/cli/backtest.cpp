@@ -156,14 +156,12 @@ void learn_folds(const Folds& folds, Learning of, const std::vector<std::string>
 void run_backtest(const BacktestArguments& options) {
   const RunConfig config = options.common.resolve(options.day_ahead.context_unless_said());
   const fs::path folder = options.out;
-  std::vector<NamedPath> inputs = named_paths("--prices", options.prices);
-  inputs.push_back({"--config", options.common.config_path});
-  inputs.push_back({"--day-ahead", options.day_ahead.path});
-  std::vector<NamedPath> outputs;
-  for (const char* name : {"backtest.csv", "backtest_days.csv", "backtest.json", "backtest.html"}) {
-    outputs.push_back({"--out", folder / name});
-  }
-  require_distinct(outputs, inputs);
+  require_distinct(
+      named_files("--out", folder,
+                  {"backtest.csv", "backtest_days.csv", "backtest.json", "backtest.html"}),
+      named_paths(
+          "--prices", options.prices,
+          {{"--config", options.common.config_path}, {"--day-ahead", options.day_ahead.path}}));
   std::vector<std::string> baselines = options.policies;
   std::erase_if(baselines, is_learnt);
   require_policies(baselines);

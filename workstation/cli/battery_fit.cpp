@@ -108,10 +108,9 @@ BatteryFit fit_from_logs(const FitArguments& options, const BatteryParameters& n
 
 void write_fit(const FitArguments& options) {
   if (options.logs.empty() && options.steps.empty()) fail("battery fit needs --log or --steps");
-  std::vector<NamedPath> inputs = named_paths("--log", options.logs);
-  inputs.push_back({"--config", options.config});
-  inputs.push_back({"--steps", options.steps});
-  require_distinct({{"--out", options.out}}, inputs);
+  require_distinct({{"--out", options.out}},
+                   named_paths("--log", options.logs,
+                               {{"--config", options.config}, {"--steps", options.steps}}));
   RunConfig config = load_run_config(options.config);
   if (!options.steps.empty()) take_steps(options.steps, config.battery);
   const BatteryFit fit = fit_from_logs(options, config.battery);

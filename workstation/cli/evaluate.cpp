@@ -184,15 +184,14 @@ NamedEvaluation evaluate_policy(const std::string& name, const EvaluationSetup& 
 
 /// Checked first, so that a wrong name costs no time.
 void require_outputs_writable(const EvaluateArguments& options) {
-  std::vector<NamedPath> inputs = named_paths("--policy", options.policies);
-  inputs.push_back({"--prices", options.prices});
-  inputs.push_back({"--fit", options.fit});
-  inputs.push_back({"--day-ahead", options.day_ahead.path});
-  inputs.push_back({"--config", options.common.config_path});
   require_distinct({{"--csv", options.csv},
                     {"--days-out", options.days_out},
                     {"--steps-out", options.steps_out}},
-                   inputs);
+                   named_paths("--policy", options.policies,
+                               {{"--prices", options.prices},
+                                {"--fit", options.fit},
+                                {"--day-ahead", options.day_ahead.path},
+                                {"--config", options.common.config_path}}));
   for (const std::string& path : {options.csv, options.days_out, options.steps_out}) {
     if (!path.empty()) require_writable(path);
   }

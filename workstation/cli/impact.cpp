@@ -39,7 +39,7 @@ std::vector<double> fleets_of(const std::vector<std::string>& texts) {
 
 void run_impact(const ImpactArguments& options) {
   const fs::path folder = options.out;
-  require_distinct({{"--out", folder / "impact.csv"}, {"--out", folder / "impact.html"}},
+  require_distinct(named_files("--out", folder, {"impact.csv", "impact.html"}),
                    {{"--config", options.common.config_path}});
   const RunConfig config = options.common.resolve();
   ImpactPlan plan = options.plan;

@@ -18,11 +18,8 @@ namespace {
 void run_report(const std::string& path, const std::string& prices) {
   const RunFolder folder{path};
   RunRecord record = existing_run_record(folder);
-  std::vector<NamedPath> outputs;
-  for (const std::string& name : RunStages::files())
-    outputs.push_back({"--run", folder.file(name)});
   if (record.prices != run_file::kSimulatedPrices) {
-    require_distinct(outputs, {{"--prices", prices}});
+    require_distinct(named_files("--run", folder.path, RunStages::files()), {{"--prices", prices}});
   }
   // Findings were already accepted or rejected when the run was made.
   const MinuteSeries series = prices.empty()

@@ -28,18 +28,6 @@ struct SizeArguments {
   bool json = false;
 };
 
-void require_files(const SizeArguments& options) {
-  std::vector<NamedPath> inputs = named_paths("--prices", options.prices);
-  inputs.push_back({"--plan", options.plan});
-  inputs.push_back({"--config", options.common.config_path});
-  inputs.push_back({"--day-ahead", options.day_ahead.path});
-  std::vector<NamedPath> outputs;
-  for (const char* name : {"size.csv", "size.html", "best.toml"}) {
-    outputs.push_back({"--out", fs::path(options.out) / name});
-  }
-  require_distinct(outputs, inputs);
-}
-
 /// Writes the configuration of the best cell; returns the command that trains its student.
 std::string how_to_learn_it(const SizeArguments& options, const RunConfig& base,
                             const SizeCell& best) {
@@ -59,7 +47,12 @@ std::string how_to_learn_it(const SizeArguments& options, const RunConfig& base,
 }
 
 void run_size(const SizeArguments& options) {
-  require_files(options);
+  const fs::path folder = options.out;
+  require_distinct(named_files("--out", folder, {"size.csv", "size.html", "best.toml"}),
+                   named_paths("--prices", options.prices,
+                               {{"--plan", options.plan},
+                                {"--config", options.common.config_path},
+                                {"--day-ahead", options.day_ahead.path}}));
   const RunConfig base = options.common.resolve(options.day_ahead.context_unless_said());
   const SizePlan plan = read_size_plan(options.plan, base);
   require_policies({plan.policy});
@@ -68,7 +61,6 @@ void run_size(const SizeArguments& options) {
   MarketSteps market = market_of(series, base.market, options.prices.front());
   options.day_ahead.attach_to(market, series, options.price_input.accepted(), base.market);
   const Folds folds = make_folds(market, {plan.window_days});
-  const fs::path folder = options.out;
   require_writable(folder / "size.csv");
   end_when_interrupted();
   const SizeCells weighed =

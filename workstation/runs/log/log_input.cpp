@@ -240,10 +240,8 @@ ReadLog LogInput::read() const {
 }
 
 void LogInput::require_not_read(const std::string& option, const std::string& output) const {
-  std::vector<NamedPath> inputs = named_paths("files", files_);
-  inputs.push_back({"--settled", settled_});
-  inputs.push_back({"--config", config_});
-  require_distinct({{option, output}}, inputs);
+  require_distinct({{option, output}},
+                   named_paths("files", files_, {{"--settled", settled_}, {"--config", config_}}));
 }
 
 StudentFile student_for_log(const std::string& name) {

@@ -17,13 +17,11 @@ std::string absolute(const std::string& path) {
 
 /// Checks the output folder of a new run.
 void require_free(const RunFolder& folder, const RunRequest& request) {
-  std::vector<NamedPath> outputs;
-  for (const std::string& name : RunStages::files())
-    outputs.push_back({"--out", folder.file(name)});
-  require_distinct(outputs, {{"--prices", request.prices},
-                             {"--day-ahead", request.day_ahead.path},
-                             {"--config", request.common.config_path},
-                             {"--from-teacher", request.from_teacher}});
+  require_distinct(named_files("--out", folder.path, RunStages::files()),
+                   {{"--prices", request.prices},
+                    {"--day-ahead", request.day_ahead.path},
+                    {"--config", request.common.config_path},
+                    {"--from-teacher", request.from_teacher}});
   for (const std::string& name : RunStages::files()) {
     if (!fs::exists(folder.file(name))) continue;
     fail("{}: contains {} but no {}, so its origin is unknown; choose another --out",
