@@ -25,60 +25,51 @@ struct Key {
 };
 
 /// Keys bound to the fields of one configuration.
-class KeyList {
- public:
-  explicit KeyList(RunConfig& config) { list(config); }
-  [[nodiscard]] const std::vector<Key>& keys() const { return keys_; }
+struct KeyList {
+  std::vector<Key> keys;
+  std::string present_section;
 
- private:
-  void section(std::string name) { section_ = std::move(name); }
+  explicit KeyList(RunConfig& c);
+
+  void section(std::string name) { present_section = std::move(name); }
 
   void number(const char* name, double& field, double low, double high, const char* comment) {
-    keys_.push_back({section_, name, fmt::format("{} ({:g} .. {:g})", comment, low, high),
-                     [=, &field](TomlTable& table) { table.number(name, field, low, high); },
-                     [&field] { return fmt::format("{}", field + 0.0); }});  // + 0.0 avoids -0
+    keys.push_back({present_section, name, fmt::format("{} ({:g} .. {:g})", comment, low, high),
+                    [=, &field](TomlTable& table) { table.number(name, field, low, high); },
+                    [&field] { return fmt::format("{}", field + 0.0); }});  // + 0.0 avoids -0
   }
   template <typename Integer>
   void integer(const char* name, Integer& field, std::int64_t low, std::int64_t high,
                const char* comment) {
-    keys_.push_back({section_, name, fmt::format("{} ({} .. {})", comment, low, high),
-                     [=, &field](TomlTable& table) {
-                       auto wide = static_cast<std::int64_t>(field);
-                       table.integer(name, wide, low, high);
-                       field = static_cast<Integer>(wide);
-                     },
-                     [&field] { return fmt::format("{}", field); }});
+    keys.push_back({present_section, name, fmt::format("{} ({} .. {})", comment, low, high),
+                    [=, &field](TomlTable& table) { table.integer(name, field, low, high); },
+                    [&field] { return fmt::format("{}", field); }});
   }
   void boolean(const char* name, bool& field, const char* comment) {
-    keys_.push_back({section_, name, comment,
-                     [name, &field](TomlTable& table) { table.boolean(name, field); },
-                     [&field] { return std::string(field ? "true" : "false"); }});
+    keys.push_back({present_section, name, comment,
+                    [name, &field](TomlTable& table) { table.boolean(name, field); },
+                    [&field] { return std::string(field ? "true" : "false"); }});
   }
   template <typename Enum>
   void choice(const char* name, Enum& field, std::initializer_list<std::string_view> choices,
               const char* comment) {
     const std::vector<std::string_view> names(choices);
-    keys_.push_back({section_, name, fmt::format("{} ({})", comment, fmt::join(names, " | ")),
-                     [=, &field](TomlTable& table) {
-                       int index = static_cast<int>(field);
-                       table.choice(name, index, names);
-                       field = static_cast<Enum>(index);
-                     },
-                     [names, &field] {
-                       return fmt::format("\"{}\"", names[static_cast<std::size_t>(field)]);
-                     }});
+    keys.push_back({present_section, name, fmt::format("{} ({})", comment, fmt::join(names, " | ")),
+                    [=, &field](TomlTable& table) {
+                      int index = static_cast<int>(field);
+                      table.choice(name, index, names);
+                      field = static_cast<Enum>(index);
+                    },
+                    [names, &field] {
+                      return fmt::format("\"{}\"", names[static_cast<std::size_t>(field)]);
+                    }});
   }
 
   /// The last key does not change a student.
-  void of_evaluation() { keys_.back().is_learning = false; }
-
-  void list(RunConfig& c);
-
-  std::string section_;
-  std::vector<Key> keys_;
+  void of_evaluation() { keys.back().is_learning = false; }
 };
 
-void KeyList::list(RunConfig& c) {
+KeyList::KeyList(RunConfig& c) {
   section("market");
   integer("observation_delay_min", c.market.observation_delay_min, 0, 5,
           "newest row visible at minute t is t - delay; 0 is the paper's ideal");
@@ -314,16 +305,14 @@ void set_config_key(RunConfig& config, std::string_view key, const TomlValue& va
     fail("{}:{}: \"{}\" is not a configuration key: use section.key, such as distil.fidelity",
          *value.file, value.line, one_line(key));
   }
-  const KeyList list(config);
-  apply_document(document, list.keys());
+  apply_document(document, KeyList(config).keys);
 }
 
 void apply_config_text(RunConfig& config, std::string_view text, const std::string& name) {
-  const KeyList list(config);
   TomlValue document;
   std::string error;
   if (!parse_toml_text(text, name, document, error)) throw UserError(error);
-  apply_document(document, list.keys());
+  apply_document(document, KeyList(config).keys);
 }
 
 void require_consistent(const RunConfig& config, const std::string& name) {
@@ -345,7 +334,7 @@ Entries config_entries(const RunConfig& config) {
   RunConfig copy = config;
   const KeyList list(copy);
   Entries entries;
-  for (const Key& key : list.keys()) {
+  for (const Key& key : list.keys) {
     entries.emplace_back(fmt::format("[{}] {}", key.section, key.name), key.get());
   }
   return entries;
@@ -356,7 +345,7 @@ std::string format_run_config(const RunConfig& config) {
   const KeyList list(copy);
   std::string text;
   std::string section;
-  for (const Key& key : list.keys()) {
+  for (const Key& key : list.keys) {
     if (key.section != section) {
       section = key.section;
       text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", section);
@@ -405,7 +394,7 @@ std::string learning_key(const RunConfig& config, const std::string& rules) {
   RunConfig copy = config;
   const KeyList list(copy);
   std::string text;
-  for (const Key& key : list.keys()) {
+  for (const Key& key : list.keys) {
     if (key.is_learning) text += fmt::format("[{}] {} = {}\n", key.section, key.name, key.get());
   }
   return text + rules;
