@@ -141,9 +141,7 @@ std::string filled_in(std::string_view template_text,
 }
 
 std::string script_safe(std::string json) {
-  for (std::size_t at = json.find('<'); at != std::string::npos; at = json.find('<', at)) {
-    json.replace(at, 1, "\\u003c");
-  }
+  replace_all(json, "<", "\\u003c");
   return json;
 }
 

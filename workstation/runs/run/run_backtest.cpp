@@ -9,6 +9,7 @@
 #include "shared/crc32.h"
 #include "shared/host/file.h"
 #include "shared/host/json.h"
+#include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/base/answer.h"
 #include "workstation/report/backtest/walk_forward.h"
@@ -86,10 +87,7 @@ std::string how_to_make_one(const RunRecord& record) {
 }  // namespace
 
 std::string with_run_folder(std::string text, const fs::path& folder) {
-  const std::string place = folder.string() + "/";
-  for (std::size_t at = 0; (at = text.find(kRunPlace, at)) != text.npos; at += place.size()) {
-    text.replace(at, kRunPlace.size(), place);
-  }
+  replace_all(text, kRunPlace, folder.string() + "/");
   return text;
 }
 

@@ -103,10 +103,10 @@ void combine_with_set(std::vector<Entries>& points, const std::string& set) {
   std::string error;
   if (!parse_toml_text("v = [" + values + "]", name, document, error)) {
     // Words need no quotes on a command line.
-    std::string quoted = "v = [\"";
-    for (const char c : values) quoted += c == ',' ? std::string("\",\"") : std::string(1, c);
+    std::string quoted = values;
+    replace_all(quoted, ",", "\",\"");
     error.clear();
-    if (!parse_toml_text(quoted + "\"]", name, document, error)) throw UserError(error);
+    if (!parse_toml_text("v = [\"" + quoted + "\"]", name, document, error)) throw UserError(error);
   }
   combine(points, set.substr(0, equals), *document.find("v"));
 }
