@@ -157,38 +157,28 @@ Columns columns_of(std::string_view header, const CsvTable& table, const std::st
   return columns;
 }
 
-/// One line of the CSV.
-struct SiteRow {
-  const CsvTable& table;
-  const Columns& columns;
-  std::size_t row;
-  fs::path folder;  ///< base of relative file names
+/// Values of one line of the CSV, by column; those of missing columns are empty.
+using SiteRow = std::map<std::string, std::string>;
 
-  [[nodiscard]] std::string value(const char* column) const {
-    const auto found = columns.find(column);
-    return found == columns.end() ? std::string() : table.text(row, found->second);
-  }
-};
-
-RuleSet rules_of(const SiteRow& site) {
+RuleSet rules_of(SiteRow& site, const fs::path& folder) {
   std::vector<std::string> paths;
-  std::istringstream names(site.value("rules"));
-  for (std::string name; names >> name;) paths.push_back((site.folder / name).string());
+  std::istringstream names(site["rules"]);
+  for (std::string name; names >> name;) paths.push_back((folder / name).string());
   return load_rules(paths);
 }
 
-RunConfig config_of(const SiteRow& site, RunConfig config) {
+/// File names are relative to `folder`.
+RunConfig config_of(SiteRow& site, const fs::path& folder, RunConfig config) {
   for (const char* column : {"battery", "contract"}) {
-    const std::string file = site.value(column);
+    const std::string file = site[column];
     if (file.empty()) continue;
-    apply_config_text(config, read_file(site.folder / file, kTomlBytesMax), file);
+    apply_config_text(config, read_file(folder / file, kTomlBytesMax), file);
   }
-  for (const auto& [key, place] : site.columns) {
-    const std::string& value = site.table.text(site.row, place);
+  for (const auto& [key, value] : site) {
     if (value.empty() || key.find('.') == key.npos) continue;
     apply_config_text(config, fmt::format("{} = {}\n", key, value), "column " + key);
   }
-  const RuleSet rules = rules_of(site);
+  const RuleSet rules = rules_of(site, folder);
   if (!rules.empty()) use_rules(config, rules, config.train.context);
   return config;
 }
@@ -212,8 +202,9 @@ std::vector<SiteClass> read_sites(const SweepRequest& request, SweepPlan& plan) 
   std::set<std::string> ids, used;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     const std::string where = fmt::format("{}:{}", csv.string(), table.line(row));
-    const SiteRow own{table, columns, row, csv.parent_path()};
-    const std::string id = own.value("id");
+    SiteRow own;
+    for (const auto& [column, place] : columns) own[column] = table.text(row, place);
+    const std::string id = own["id"];
     if (id.empty() || id.find_first_of("\t\n,/") != id.npos) {
       fail(
           "{}: \"{}\" is not a valid site id: it must not be empty or contain a comma, slash or "
@@ -222,7 +213,7 @@ std::vector<SiteClass> read_sites(const SweepRequest& request, SweepPlan& plan) 
     }
     if (!ids.insert(id).second) fail("{}: site \"{}\" is repeated", where, id);
     try {
-      const RunConfig config = config_of(own, plan.base);
+      const RunConfig config = config_of(own, csv.parent_path(), plan.base);
       require_consistent(config, where);
       const RuleSet& rules = config.distil.rules;
       const std::string rules_text = rules.empty() ? "" : format_rules(rules);
@@ -232,8 +223,8 @@ std::vector<SiteClass> read_sites(const SweepRequest& request, SweepPlan& plan) 
       if (is_new && !used.insert(at->second).second)
         fail("hash collision of two classes: {}", at->second);
       if (is_new) classes.push_back({at->second, learnt, rules_text});
-      plan.sites.push_back({id, own.value("region"), config.battery.power_w_max,
-                            config.battery.capacity_wh, at->second});
+      plan.sites.push_back(
+          {id, own["region"], config.battery.power_w_max, config.battery.capacity_wh, at->second});
     } catch (const UserError& error) {
       if (std::string_view(error.what()).starts_with(where)) throw;
       fail("{}: site \"{}\": {}", where, id, error.what());
