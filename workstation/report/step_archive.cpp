@@ -23,7 +23,7 @@ static_assert(1'000'000 * kMilliPerEur < std::numeric_limits<std::int32_t>::max(
 
 /// One array: `value` of each item.
 template <typename Number, typename Items, typename Value>
-void append(const Items& items, Value value, std::string& bytes) {
+void append(std::string& bytes, const Items& items, Value value) {
   for (const auto& item : items) {
     const auto number = static_cast<Number>(std::invoke(value, item));
     bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
@@ -37,26 +37,22 @@ std::int32_t milli_of(double eur_per_mwh) {
 void append_market(std::span<const MarketStep> steps, const ClassOfStep& class_of,
                    std::string& bytes) {
   using Step = const MarketStep&;
-  append<std::int32_t>(
-      steps, [](Step s) { return s.utc_s / kSecondsPerMinute; }, bytes);
-  append<std::int32_t>(
-      steps, [](Step s) { return price_centi_of(s.observed_eur_per_mwh); }, bytes);
-  append<std::int32_t>(
-      steps, [](Step s) { return milli_of(s.paid_eur_per_mwh); }, bytes);
-  append<std::int16_t>(
-      steps,
-      [](Step s) { return s.quarter_hour * kMinutesPerQuarterHour + s.minute_of_quarter_hour; },
-      bytes);
-  append<std::int8_t>(steps, class_of, bytes);
+  append<std::int32_t>(bytes, steps, [](Step s) { return s.utc_s / kSecondsPerMinute; });
+  append<std::int32_t>(bytes, steps, [](Step s) { return price_centi_of(s.observed_eur_per_mwh); });
+  append<std::int32_t>(bytes, steps, [](Step s) { return milli_of(s.paid_eur_per_mwh); });
+  append<std::int16_t>(bytes, steps, [](Step s) {
+    return s.quarter_hour * kMinutesPerQuarterHour + s.minute_of_quarter_hour;
+  });
+  append<std::int8_t>(bytes, steps, class_of);
 }
 
 void append_policy(std::span<const StepRecord> records, std::string& bytes) {
   using Record = const StepRecord&;
-  append<float>(records, &StepRecord::profit_eur, bytes);
-  append<float>(records, &StepRecord::power_w, bytes);
-  append<std::int16_t>(
-      records, [](Record r) { return std::lround(r.soc_frac * kSocFullE4); }, bytes);
-  append<std::int8_t>(records, &StepRecord::action, bytes);
+  append<float>(bytes, records, &StepRecord::profit_eur);
+  append<float>(bytes, records, &StepRecord::power_w);
+  append<std::int16_t>(bytes, records,
+                       [](Record r) { return std::lround(r.soc_frac * kSocFullE4); });
+  append<std::int8_t>(bytes, records, &StepRecord::action);
 }
 
 std::string deflated(const std::string& bytes) {
