@@ -189,27 +189,24 @@ struct RuleGain {
   }
 };
 
-class Pricing {
- public:
-  Pricing(const PriceArguments& options, const RunConfig& config, const MarketSteps& market)
-      : options_(options), config_(config), market_(market) {
-    days_ = market.days_of(parse_split(options.split));
-    if (days_.empty()) fail("{}: no complete day in the {} split", options.prices, options.split);
-  }
+struct Pricing {
+  const PriceArguments& options;
+  const RunConfig& config;
+  const MarketSteps& market;
+  std::vector<MarketDay> days;
 
   ResetAndCarried run(Policy& policy) const {
-    return {
-        evaluate(market_, days_, policy, {config_.battery, config_.initial_soc_frac, false}),
-        evaluate_carried_over(market_, days_, policy, config_.battery, config_.initial_soc_frac)};
+    return {evaluate(market, days, policy, {config.battery, config.initial_soc_frac, false}),
+            evaluate_carried_over(market, days, policy, config.battery, config.initial_soc_frac)};
   }
 
   void print_head(const ResetAndCarried& base, const std::string& name) const {
-    if (options_.json) return;
+    if (options.json) return;
     fmt::print(
         "{} split, {} days; {} earns {:.1f} EUR per day per MWh of capacity, with the SoC carried "
         "over {:.1f}.\nChange by each rule, EUR per day per MWh:\n"
         "{:<40}  {:>7} {:>6} {:>8}  {:>7} {:>6} {:>8}  {:>12}\n",
-        options_.split, days_.size(), name, base.reset.profit_eur_per_day_per_mwh(),
+        options.split, days.size(), name, base.reset.profit_eur_per_day_per_mwh(),
         base.carried.profit_eur_per_day_per_mwh(), "rule", "reset", "s.e.", "by month", "carried",
         "s.e.", "by month", "decisions, %");
   }
@@ -217,7 +214,7 @@ class Pricing {
   void print_row(const std::string& rule, const ResetAndCarried& base, const ResetAndCarried& ruled,
                  double changed_share) const {
     const RuleGain reset(ruled.reset, base.reset), carried(ruled.carried, base.carried);
-    if (options_.json) return print_json(rule, reset, carried, changed_share);
+    if (options.json) return print_json(rule, reset, carried, changed_share);
     fmt::print("{:<40}  {:>+7.2f} {:>6} {:>8}  {:>+7.2f} {:>6} {:>8}  {:>12.2f}\n", rule,
                reset.gain.mean, error_text(reset.gain.errors.plain, 2),
                error_text(reset.gain.errors.by_month, 2), carried.gain.mean,
@@ -227,17 +224,16 @@ class Pricing {
 
   /// For a rule that does not restrict single decisions.
   void print_unknown(const std::string& rule) const {
-    if (options_.json) return print_json(rule, {}, {}, NAN);
+    if (options.json) return print_json(rule, {}, {}, NAN);
     fmt::print("{:<40}  not on single states: see 'distil --rules'\n", rule);
   }
 
- private:
   void print_json(const std::string& rule, const RuleGain& reset, const RuleGain& carried_over,
                   double changed_share) const {
     Json json = answer("rule_price", {{"rule", rule},
-                                      {key::kGainOver, options_.policy},
-                                      {"split", options_.split},
-                                      {"days", days_.size()},
+                                      {key::kGainOver, options.policy},
+                                      {"split", options.split},
+                                      {"days", days.size()},
                                       {"share_of_decisions_changed", Decimals{changed_share, 6}}});
     reset.add_to(json, false);
     Json carried = Json::object();
@@ -245,11 +241,6 @@ class Pricing {
     json.set(key::kCarriedOver, std::move(carried));
     fmt::print("{}\n", json.line());
   }
-
-  const PriceArguments& options_;
-  const RunConfig& config_;
-  const MarketSteps& market_;
-  std::vector<MarketDay> days_;
 };
 
 void run_rules_price(const PriceArguments& options) {
@@ -257,7 +248,9 @@ void run_rules_price(const PriceArguments& options) {
   const RuleSet rules = options.rule_files.read();
   const MarketSteps market =
       market_of(options.price_input.read(options.prices), config.market, options.prices);
-  const Pricing pricing(options, config, market);
+  const Pricing pricing{options, config, market, market.days_of(parse_split(options.split))};
+  if (pricing.days.empty())
+    fail("{}: no complete day in the {} split", options.prices, options.split);
   const ContextClasses classes = context_of_policy(options.policy, market, config.train.context);
   require_consistent(rules, config.distil.correction.thresholds, classes.kind);
   const std::shared_ptr<Policy> policy = make_policy(options.policy, market, config.battery);

@@ -88,29 +88,27 @@ struct Answer {
 };
 
 /// Losses of one day of one policy.
-class DayJudge {
- public:
-  DayJudge(const LossChain& chain, const BatteryParameters& battery, const ForesightPolicy& bound,
-           int usual_age_min)
-      : chain_(chain), battery_(battery), bound_(bound), usual_age_min_(usual_age_min) {}
+struct DayJudge {
+  const LossChain& chain;
+  const BatteryParameters& battery;
+  const ForesightPolicy& bound;
+  int usual_age_min;
 
   void judge(std::span<const MarketStep> steps, const std::vector<StepRecord>& records,
              DayLoss& loss) const {
-    const RemainingExtremes ends(records, battery_);
+    const RemainingExtremes ends(records, battery);
     for (std::size_t i = 0; i < steps.size(); ++i) judge_step(i, steps[i], records[i], ends, loss);
     double sum = 0;
     for (const double part : loss.part_eur) sum += part;
     // With a cycle limit, the plan includes the shadow price of throughput, which is not in
     // profits.
     const LossCause rest =
-        battery_.cycles_per_day_max > 0 ? LossCause::kCycleLimit : LossCause::kRounding;
+        battery.cycles_per_day_max > 0 ? LossCause::kCycleLimit : LossCause::kRounding;
     loss.part_eur[static_cast<std::size_t>(rest)] += loss.missed_eur() - sum;
   }
 
- private:
   [[nodiscard]] Answer answer(std::size_t i, double soc_frac, Action action, double share) const {
-    return {action,
-            bound_.worth_eur(i, soc_frac, power_sign(action) * battery_.power_w_max * share)};
+    return {action, bound.worth_eur(i, soc_frac, power_sign(action) * battery.power_w_max * share)};
   }
   [[nodiscard]] Answer ask(const Policy& policy, const MarketStep& shown, std::size_t i,
                            double soc_frac) const {
@@ -130,7 +128,7 @@ class DayJudge {
                   const RemainingExtremes& ends, DayLoss& loss) const {
     const double soc = record.soc_frac;
     const Answer optimum = best(i, soc);
-    const Answer done{record.action, bound_.worth_eur(i, soc, record.power_w)};
+    const Answer done{record.action, bound.worth_eur(i, soc, record.power_w)};
     const std::size_t hour = static_cast<std::size_t>(step.quarter_hour) / 4;
     loss.regret_eur[hour] += optimum.worth_eur - done.worth_eur;
     Answer now = done;
@@ -143,22 +141,22 @@ class DayJudge {
       }
       now = freer;
     };
-    const Policy* last = &chain_.policy;
+    const Policy* last = &chain.policy;
     const Answer wanted = ask(*last, step, i, soc);
     if (wanted.action != record.action) {  // cycle limit reached
       add(LossCause::kCycleLimit, optimum);
       return;
     }
-    if (chain_.under_rules != nullptr) {
-      last = chain_.under_rules;
+    if (chain.under_rules != nullptr) {
+      last = chain.under_rules;
       add(LossCause::kCorrection, ask(*last, step, i, soc));
     }
-    if (chain_.plain != nullptr) {
-      last = chain_.plain;
-      const bool has_rules = chain_.under_rules != nullptr;
+    if (chain.plain != nullptr) {
+      last = chain.plain;
+      const bool has_rules = chain.under_rules != nullptr;
       add(has_rules ? LossCause::kRules : LossCause::kCorrection, ask(*last, step, i, soc));
     }
-    add(step.observed_age_min > usual_age_min_ ? LossCause::kOutage : LossCause::kNewestPrice,
+    add(step.observed_age_min > usual_age_min ? LossCause::kOutage : LossCause::kNewestPrice,
         ask(*last, with_paid_price_shown(step), i, soc));
     add(cause_of_the_future(now.action, optimum.action, step.paid_eur_per_mwh, i, ends), optimum);
   }
@@ -172,11 +170,6 @@ class DayJudge {
     if (best == Action::kCharge) return LossCause::kCheapMissed;
     return LossCause::kTiming;
   }
-
-  const LossChain& chain_;
-  const BatteryParameters& battery_;
-  const ForesightPolicy& bound_;
-  int usual_age_min_;
 };
 
 }  // namespace
@@ -201,7 +194,7 @@ std::vector<DayLoss> foresight_gap(const MarketSteps& market, const std::vector<
     loss.foresight_eur = evaluate(market, {day}, bound, options).days.front().profit_eur;
     loss.earned_eur =
         evaluate(market, {day}, chain.policy, options, &records).days.front().profit_eur;
-    DayJudge(chain, battery, bound, usual_age_min).judge(market.of(day), records, loss);
+    DayJudge{chain, battery, bound, usual_age_min}.judge(market.of(day), records, loss);
     losses.push_back(std::move(loss));
   }
   return losses;
