@@ -14,7 +14,6 @@
 #include "workstation/data/env/evaluate.h"
 #include "workstation/report/comparison.h"
 #include "workstation/report/figures/html.h"
-#include "workstation/report/figures/picture_table.h"
 #include "workstation/report/figures/policy_map.h"
 
 namespace bess {

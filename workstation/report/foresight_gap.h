@@ -30,7 +30,7 @@
 #include <vector>
 
 #include "workstation/data/env/evaluate.h"
-#include "workstation/report/figures/picture_table.h"
+#include "workstation/report/figures/html.h"
 
 namespace bess {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "shared/host/json.h"
-#include "workstation/report/figures/picture_table.h"
+#include "workstation/report/figures/html.h"
 #include "workstation/report/report.h"
 
 namespace bess {

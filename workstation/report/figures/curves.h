@@ -8,7 +8,7 @@
 #include "workstation/correction/distillation/distil.h"
 #include "workstation/data/env/market_steps.h"
 #include "workstation/policy/rl/train.h"
-#include "workstation/report/figures/picture_table.h"
+#include "workstation/report/figures/html.h"
 
 namespace bess {
 

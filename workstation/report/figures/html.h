@@ -1,6 +1,7 @@
-// HTML pages: static files, tables, pages of text, and the report page.
+// HTML pages: static files, tables, CSV files of pictures, pages of text, and the report page.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <string>
 #include <string_view>
@@ -58,6 +59,26 @@ struct SortTable {
 /// Shows columns with a title.
 SortTable sort_table(const std::string& id, const std::string& caption, const Table& table);
 std::string sort_table_html(const SortTable& table);
+
+// CSV file of a picture, in the folder of the page and linked from it.
+
+inline constexpr std::size_t kMonthTextLength = 7;  ///< of "2023-01"
+
+/// Number with six decimals, never -0.
+std::string exact(double value);
+
+struct PictureTable {
+  std::string name;  ///< of the file, without extension
+  std::vector<std::string> columns;
+  std::vector<std::vector<std::string>> rows;  ///< one field per column
+  bool packed = false;                         ///< compressed file
+};
+
+/// Writes "lost_days.csv", or ".csv.gz" if packed, and returns this name.
+std::string write_picture(const PictureTable& table, const std::filesystem::path& folder);
+
+/// Link to a file in the folder of the page.
+std::string csv_link(std::string_view file);
 
 /// Complete, self-contained document for light, dark, phone and print.
 std::string format_page(std::string_view title, std::string_view body);

@@ -12,7 +12,6 @@
 #include "workstation/data/market/series/imbalance_price.h"
 #include "workstation/data/market/series/local_date.h"
 #include "workstation/report/figures/html.h"
-#include "workstation/report/figures/picture_table.h"
 #include "workstation/runs/chain/policy_factory.h"
 
 namespace bess {

@@ -8,7 +8,6 @@
 #include "shared/host/text.h"
 #include "workstation/base/answer.h"
 #include "workstation/report/figures/html.h"
-#include "workstation/report/figures/picture_table.h"
 #include "workstation/report/figures/policy_map.h"
 
 namespace bess {
