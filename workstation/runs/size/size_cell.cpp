@@ -106,9 +106,7 @@ SizePlan read_size_plan(const std::string& path, const RunConfig& base) {
   TomlTable size(top.table("size"), path, "[size]", error);
   plan.power_w = read_kilos(size, "power_kw");
   plan.capacity_wh = read_kilos(size, "capacity_kwh");
-  std::int64_t window_days = plan.window_days;
-  size.integer("window_days", window_days, 30, 3650);
-  plan.window_days = static_cast<int>(window_days);
+  size.integer("window_days", plan.window_days, 30, 3650);
   size.line("policy", plan.policy);
   size.finish();
   read_contracts(top, base, plan);
@@ -157,50 +155,25 @@ SizeClass trade_class(const RunConfig& config, const SizeBacktest& backtest) {
           bound > 0 ? profit / bound : NAN};
 }
 
-/// Mean import by quarter-hour, from consecutive minutes.
-class PeakMeter {
- public:
-  explicit PeakMeter(double power_w_max) : power_w_max_(power_w_max) {}
-
-  void add_minute(std::int64_t utc_s, double power_w) {
-    if (utc_s / kSecondsPerQuarterHour != quarter_hour_) {
-      close();
-      quarter_hour_ = utc_s / kSecondsPerQuarterHour;
-    }
-    watt_minutes_ += std::max(power_w, 0.0);
-  }
-  std::vector<MonthPeak> peaks() && {
-    close();
-    return std::move(peaks_);
-  }
-
- private:
-  void close() {
-    if (quarter_hour_ == 0) return;
-    const std::string month =
-        format_local_date(local_date_of(quarter_hour_ * kSecondsPerQuarterHour)).substr(0, 7);
-    const double share = watt_minutes_ / kMinutesPerQuarterHour / power_w_max_;
-    if (peaks_.empty() || peaks_.back().month != month) peaks_.push_back({month, 0});
-    peaks_.back().power_share = std::max(peaks_.back().power_share, share);
-    watt_minutes_ = 0;
-  }
-
-  double power_w_max_;
-  std::int64_t quarter_hour_ = 0;  ///< 0: none yet
-  double watt_minutes_ = 0;
-  std::vector<MonthPeak> peaks_;
-};
-
 }  // namespace
 
 std::vector<MonthPeak> month_peaks(const std::vector<StepRecord>& steps, double power_w_max) {
-  PeakMeter meter(power_w_max);
+  std::map<std::int64_t, double> watt_minutes;  // imported, by quarter-hour
   for (const StepRecord& step : steps) {
     for (int minute = 0; minute < kMinutesPerStep; ++minute) {
-      meter.add_minute(step.utc_s + 60 * minute, step.power_w);
+      watt_minutes[(step.utc_s + 60 * minute) / kSecondsPerQuarterHour] +=
+          std::max(step.power_w, 0.0);
     }
   }
-  return std::move(meter).peaks();
+  std::vector<MonthPeak> peaks;
+  for (const auto& [quarter_hour, sum] : watt_minutes) {
+    const std::string month =
+        format_local_date(local_date_of(quarter_hour * kSecondsPerQuarterHour)).substr(0, 7);
+    if (peaks.empty() || peaks.back().month != month) peaks.push_back({month, 0});
+    const double share = sum / kMinutesPerQuarterHour / power_w_max;
+    peaks.back().power_share = std::max(peaks.back().power_share, share);
+  }
+  return peaks;
 }
 
 namespace {
