@@ -11,7 +11,6 @@
 #include "workstation/cli/commands.h"
 #include "workstation/correction/student/certificate.h"
 #include "workstation/runs/chain/common_options.h"
-#include "workstation/runs/chain/source_tree.h"
 
 namespace bess {
 namespace {

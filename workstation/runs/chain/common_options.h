@@ -1,6 +1,7 @@
-// Options shared by several subcommands, with their names and ranges.
+// Options shared by several subcommands, with their names and ranges, and values of others.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,5 +41,12 @@ std::vector<double> numbers_in(const std::vector<std::string>& texts, double low
 
 /// Root of a web API without a trailing slash. Throws UserError naming `option` if malformed.
 std::string checked_base_url(std::string url, const std::string& option);
+
+/// edge/generated/student_weights.h of the source tree around `folder`, if any.
+std::optional<std::filesystem::path> header_in_tree_around(const std::filesystem::path& folder);
+
+/// The same around the current folder, else around this program: the header that `export` writes.
+/// Throws UserError with a remedy when neither is in a source tree.
+std::filesystem::path header_to_replace();
 
 }  // namespace bess

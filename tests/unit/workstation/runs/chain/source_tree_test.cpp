@@ -1,9 +1,8 @@
-#include "workstation/runs/chain/source_tree.h"
-
 #include <gtest/gtest.h>
 
 #include "shared/host/file.h"
 #include "tests/support/temporary_folder.h"
+#include "workstation/runs/chain/common_options.h"
 
 namespace bess {
 namespace {
