@@ -179,16 +179,14 @@ std::vector<std::vector<ImpactFigures>> figures_of(const ImpactPlan& plan,
 ImpactRow row_of(const std::vector<ImpactFigures>& seeds) {
   ImpactRow row{};
   const auto count = static_cast<double>(seeds.size());
-  for (const ImpactFigures& seed : seeds) {
-    row.mean.eur_per_mw_day += seed.eur_per_mw_day / count;
-    row.mean.overshoot_share += seed.overshoot_share / count;
-    row.mean.imbalance_mw += seed.imbalance_mw / count;
-    row.mean.imbalance_alone_mw += seed.imbalance_alone_mw / count;
-    row.mean.switches_per_day += seed.switches_per_day / count;
+  using F = ImpactFigures;
+  for (const auto field : {&F::eur_per_mw_day, &F::overshoot_share, &F::imbalance_mw,
+                           &F::imbalance_alone_mw, &F::switches_per_day}) {
+    for (const ImpactFigures& seed : seeds) row.*field += seed.*field / count;
   }
   double squares = 0;
   for (const ImpactFigures& seed : seeds) {
-    squares += std::pow(seed.eur_per_mw_day - row.mean.eur_per_mw_day, 2);
+    squares += std::pow(seed.eur_per_mw_day - row.eur_per_mw_day, 2);
   }
   row.standard_error = seeds.size() > 1 ? std::sqrt(squares / (count - 1) / count) : NAN;
   return row;
@@ -248,18 +246,13 @@ Table table_of(const std::vector<ImpactRow>& rows) {
       {{"formula", "", "", 0, "Formula"}, [](const R& r) { return formula_name(r.formula); }},
       {{"fleet_mw", "", "", kAllDecimals, "MW"}, &R::fleet_mw},
       {{"variant", "", "", 0, "Variant"}, &R::variant},
-      {{"eur_per_mw_day", "", "{:.1f}", 4, "EUR per MW and day"},
-       [](const R& r) { return r.mean.eur_per_mw_day; }},
+      {{"eur_per_mw_day", "", "{:.1f}", 4, "EUR per MW and day"}, &R::eur_per_mw_day},
       {{"eur_per_mw_day_standard_error", "", "{:.1f}", 4, "s.e. over seeds, EUR per MW and day"},
        &R::standard_error},
-      {{"overshoot_share", "", "{:.3f}", 4, "Overshoot, share"},
-       [](const R& r) { return r.mean.overshoot_share; }},
-      {{"imbalance_mw", "", "{:.1f}", 4, "Mean |SI|, MW"},
-       [](const R& r) { return r.mean.imbalance_mw; }},
-      {{"imbalance_alone_mw", "", "{:.1f}", 4, "Without, MW"},
-       [](const R& r) { return r.mean.imbalance_alone_mw; }},
-      {{"switches_per_day", "", "{:.1f}", 4, "Switches/day"},
-       [](const R& r) { return r.mean.switches_per_day; }},
+      {{"overshoot_share", "", "{:.3f}", 4, "Overshoot, share"}, &R::overshoot_share},
+      {{"imbalance_mw", "", "{:.1f}", 4, "Mean |SI|, MW"}, &R::imbalance_mw},
+      {{"imbalance_alone_mw", "", "{:.1f}", 4, "Without, MW"}, &R::imbalance_alone_mw},
+      {{"switches_per_day", "", "{:.1f}", 4, "Switches/day"}, &R::switches_per_day},
   };
   return {kColumns, rows};
 }
@@ -277,15 +270,15 @@ std::string turning_points(const ImpactPlan& plan, const std::vector<ImpactRow>&
   const auto as_it_is = [&](double mw) -> const ImpactRow& {
     return row_at(rows, formula, mw, impact_variants(plan).front().name);
   };
-  const auto money = [&](double mw) { return mw * as_it_is(mw).mean.eur_per_mw_day; };
-  const auto imbalance = [&](double mw) { return as_it_is(mw).mean.imbalance_mw; };
+  const auto money = [&](double mw) { return mw * as_it_is(mw).eur_per_mw_day; };
+  const auto imbalance = [&](double mw) { return as_it_is(mw).imbalance_mw; };
   const double most = *std::ranges::max_element(plan.fleet_mw, {}, money);
   const double best = *std::ranges::min_element(plan.fleet_mw, {}, imbalance);
   std::string text =
       fmt::format("{}: highest total earnings at {:g} MW; lowest system imbalance at {:g} MW",
                   formula_name(formula), most, best);
   for (const double mw : plan.fleet_mw) {
-    const ImpactFigures& figures = as_it_is(mw).mean;
+    const ImpactFigures& figures = as_it_is(mw);
     if (mw <= best || figures.imbalance_mw <= figures.imbalance_alone_mw) continue;
     return text + fmt::format(", and higher than without a fleet from {:g} MW", mw);
   }
@@ -313,7 +306,7 @@ Json lines_chart(const std::string& id, const std::string& unit, const ImpactPla
 std::string with_error(const ImpactRow& row) {
   const std::string error =
       std::isnan(row.standard_error) ? "" : fmt::format(" ({:.0f})", row.standard_error);
-  return fmt::format("{:.0f}{}", row.mean.eur_per_mw_day, error);
+  return fmt::format("{:.0f}{}", row.eur_per_mw_day, error);
 }
 
 std::string plan_text(const ImpactPlan& plan) {
@@ -340,7 +333,7 @@ std::string format_impact_table(const ImpactPlan& plan, const std::vector<Impact
       for (const ImpactVariant& variant : variants) {
         text += fmt::format(" {:>14}", with_error(row_at(rows, formula, mw, variant.name)));
       }
-      const ImpactFigures& figures = row_at(rows, formula, mw, variants.front().name).mean;
+      const ImpactFigures& figures = row_at(rows, formula, mw, variants.front().name);
       text += fmt::format(" {:>8.1f} % {:>10.1f} {:>8.1f}\n", 100 * figures.overshoot_share,
                           figures.imbalance_mw, figures.switches_per_day);
     }
@@ -378,7 +371,7 @@ void write_impact_page(const ImpactPlan& plan, const std::vector<ImpactRow>& row
                         html_escaped(title), chart_html(id, title), html_escaped(note));
   };
   const auto of_formula = [&](std::size_t f, double mw) -> const ImpactFigures& {
-    return row_at(rows, static_cast<PriceFormula>(f), mw, variants.front()).mean;
+    return row_at(rows, static_cast<PriceFormula>(f), mw, variants.front());
   };
   figure("EUR per MW and day by fleet size", "money",
          lines_chart("money", kMoneyUnit, plan, formulas,
@@ -387,14 +380,14 @@ void write_impact_page(const ImpactPlan& plan, const std::vector<ImpactRow>& row
   figure("Mean absolute system imbalance with the fleet, MW", "imbalance",
          lines_chart("imbalance", "MW", plan, formulas,
                      [&](std::size_t f, double mw) { return of_formula(f, mw).imbalance_mw; }),
-         fmt::format("Without a fleet {:.1f} MW.", rows.front().mean.imbalance_alone_mw));
+         fmt::format("Without a fleet {:.1f} MW.", rows.front().imbalance_alone_mw));
   for (std::size_t f = 0; f < formulas.size(); ++f) {
     const auto formula = static_cast<PriceFormula>(f);
     const std::string id = fmt::format("variants-{}", f + 1);
     figure(fmt::format("Variants, formula {}, {}", formulas[f], kMoneyUnit), id,
            lines_chart(id, kMoneyUnit, plan, variants,
                        [&](std::size_t v, double mw) {
-                         return row_at(rows, formula, mw, variants[v]).mean.eur_per_mw_day;
+                         return row_at(rows, formula, mw, variants[v]).eur_per_mw_day;
                        }),
            turning_points(plan, rows, formula) + ".");
   }

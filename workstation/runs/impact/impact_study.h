@@ -34,11 +34,10 @@ struct ImpactFigures {
 };
 
 /// Means over the seeds, and the standard error of the earnings (NaN for one seed).
-struct ImpactRow {
+struct ImpactRow : ImpactFigures {
   PriceFormula formula;
   double fleet_mw;
   std::string variant;
-  ImpactFigures mean;
   double standard_error;
 };
 

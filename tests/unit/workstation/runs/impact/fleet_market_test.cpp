@@ -185,21 +185,20 @@ TEST(ImpactStudy, RowsAreMeansOverSeedsAndAShyFleetTradesLess) {
         rows, [&](const ImpactRow& row) { return row.fleet_mw == mw && row.variant == variant; });
   };
   const ImpactRow& alone = row_of(0, "as it is");
-  EXPECT_EQ(alone.mean.overshoot_share, 0);
-  EXPECT_EQ(alone.mean.imbalance_mw, alone.mean.imbalance_alone_mw);
-  EXPECT_EQ(row_of(0, "round 1").mean.eur_per_mw_day, alone.mean.eur_per_mw_day)
+  EXPECT_EQ(alone.overshoot_share, 0);
+  EXPECT_EQ(alone.imbalance_mw, alone.imbalance_alone_mw);
+  EXPECT_EQ(row_of(0, "round 1").eur_per_mw_day, alone.eur_per_mw_day)
       << "its own prices are those of the environment";
-  EXPECT_GT(alone.mean.eur_per_mw_day, row_of(600, "as it is").mean.eur_per_mw_day);
-  EXPECT_GT(row_of(600, "as it is").mean.overshoot_share, 0.1);
-  EXPECT_GT(row_of(600, "shy").mean.eur_per_mw_day, row_of(600, "as it is").mean.eur_per_mw_day);
-  EXPECT_LT(row_of(600, "shy").mean.switches_per_day,
-            row_of(600, "as it is").mean.switches_per_day);
+  EXPECT_GT(alone.eur_per_mw_day, row_of(600, "as it is").eur_per_mw_day);
+  EXPECT_GT(row_of(600, "as it is").overshoot_share, 0.1);
+  EXPECT_GT(row_of(600, "shy").eur_per_mw_day, row_of(600, "as it is").eur_per_mw_day);
+  EXPECT_LT(row_of(600, "shy").switches_per_day, row_of(600, "as it is").switches_per_day);
   plan.seeds = 1;
   const std::vector<ImpactRow> first = study_impact(plan, {.battery = {}});
   EXPECT_TRUE(std::isnan(first[0].standard_error));
   // Of two seeds the error is half of their difference.
-  EXPECT_NEAR(std::fabs(first[0].mean.eur_per_mw_day - rows[0].mean.eur_per_mw_day),
-              rows[0].standard_error, 1e-6);
+  EXPECT_NEAR(std::fabs(first[0].eur_per_mw_day - rows[0].eur_per_mw_day), rows[0].standard_error,
+              1e-6);
 }
 
 }  // namespace
