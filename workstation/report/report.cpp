@@ -39,8 +39,8 @@ std::string battery_text(const BatteryParameters& battery) {
 /// Run, prices, battery and date, as far as known: "first, market.csv, 8 MW, 16 MWh, 2026-11-23"
 std::string title_of(const RunResults& in) {
   const auto fact = [&](std::string_view name, std::string_view end) {
-    const auto found = std::ranges::find(in.facts, name, &ProvenanceLine::name);
-    return found == in.facts.end() ? "" : found->value.substr(0, found->value.rfind(end)) + ", ";
+    const auto found = std::ranges::find(in.facts, name, &Entries::value_type::first);
+    return found == in.facts.end() ? "" : found->second.substr(0, found->second.rfind(end)) + ", ";
   };
   const std::string title =
       fact("run", "\n") + fact("prices", ": ") + size_text(in.battery) + ", " + fact("date", "T");
@@ -81,8 +81,8 @@ double capacity_mwh_of(const RunResults& in) { return in.battery.capacity_wh / k
 
 std::string page_of(const RunResults& in, const PageSteps& steps,
                     const std::vector<DayLoss>& losses) {
-  std::vector<ProvenanceLine> facts = in.facts;
-  facts.push_back({"battery", battery_text(in.battery)});
+  Entries facts = in.facts;
+  facts.emplace_back("battery", battery_text(in.battery));
   const std::optional<RulePrices> prices = rule_prices_of(in.evaluations);
   const bool has_failed = !in.broken.empty();
   const Certificate& plain = in.plain->certificate;

@@ -31,7 +31,7 @@ struct RunResults {
   StudentFile corrected;                  ///< both students with the run's certificate
   std::vector<BrokenDemand> broken = {};  ///< of an unproved student
   WalkForwardOfRun walk_forward = {};
-  std::vector<ProvenanceLine> facts = {};  ///< date, host, inputs and command
+  Entries facts = {};  ///< date, host, inputs and command
 };
 
 /// Precondition: there is a plain student. Writes report.html and a CSV file for each picture into

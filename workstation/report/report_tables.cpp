@@ -232,11 +232,10 @@ std::string proof_sentence(const Certificate& c) {
       grouped(c.states_checked));
 }
 
-std::string provenance_html(const std::vector<ProvenanceLine>& facts, const std::string& lines) {
+std::string provenance_html(const Entries& facts, const std::string& lines) {
   std::string text = "<dl class=\"facts\">\n";
-  for (const ProvenanceLine& fact : facts) {
-    text +=
-        fmt::format("<dt>{}</dt><dd>{}</dd>\n", html_escaped(fact.name), html_escaped(fact.value));
+  for (const auto& [name, value] : facts) {
+    text += fmt::format("<dt>{}</dt><dd>{}</dd>\n", html_escaped(name), html_escaped(value));
   }
   text += "</dl>\n";
   if (!lines.empty()) text += fmt::format("<pre>{}</pre>\n", html_escaped(lines));

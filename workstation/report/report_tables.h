@@ -4,19 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "workstation/base/answer.h"
 #include "workstation/correction/student/certificate.h"
 #include "workstation/correction/student/prove.h"
 #include "workstation/report/comparison.h"
 #include "workstation/report/headline.h"
 
 namespace bess {
-
-// Line of the provenance of a page.
-
-struct ProvenanceLine {
-  std::string name;
-  std::string value;
-};
 
 // Notes below a comparison: profits of the whole battery, and equal policies.
 
@@ -47,7 +41,7 @@ std::string rules_html(const Certificate& uncorrected, const Certificate& correc
                        ContextKind kind, const RulePrices* prices);
 
 /// Names and values, then `lines` unchanged.
-std::string provenance_html(const std::vector<ProvenanceLine>& facts, const std::string& lines);
+std::string provenance_html(const Entries& facts, const std::string& lines);
 
 /// 6,950,033,280
 std::string grouped(std::int64_t count);

@@ -89,20 +89,20 @@ std::string span_text(const MarketSteps& market) {
 }
 
 /// Date, run, host, command and times; with SOURCE_DATE_EPOCH only the date.
-std::vector<ProvenanceLine> making_facts(const RunFolder& folder) {
-  std::vector<ProvenanceLine> facts;
+Entries making_facts(const RunFolder& folder) {
+  Entries facts;
   if (const char* epoch = std::getenv("SOURCE_DATE_EPOCH")) {
-    facts.push_back({"date", std::string(utc_text(std::strtoll(epoch, nullptr, 10)).view())});
+    facts.emplace_back("date", std::string(utc_text(std::strtoll(epoch, nullptr, 10)).view()));
     return facts;
   }
-  facts.push_back({"date", std::string(utc_text(std::time(nullptr)).view())});
-  facts.push_back({"run", run_name(folder)});
-  facts.push_back({"host", host_name()});
-  facts.push_back({"command", command_line()});
-  facts.push_back({"CPU time", fmt::format("{:.1f} s, this command until here",
-                                           static_cast<double>(std::clock()) / CLOCKS_PER_SEC)});
+  facts.emplace_back("date", std::string(utc_text(std::time(nullptr)).view()));
+  facts.emplace_back("run", run_name(folder));
+  facts.emplace_back("host", host_name());
+  facts.emplace_back("command", command_line());
+  facts.emplace_back("CPU time", fmt::format("{:.1f} s, this command until here",
+                                             static_cast<double>(std::clock()) / CLOCKS_PER_SEC));
   const std::string times = stage_times(folder.path / "times.json");
-  if (!times.empty()) facts.push_back({"stages", times});
+  if (!times.empty()) facts.emplace_back("stages", times);
   return facts;
 }
 
@@ -110,9 +110,8 @@ std::vector<ProvenanceLine> making_facts(const RunFolder& folder) {
 
 std::string program_text() { return fmt::format("bess-train {}, {}", BESS_VERSION, build_line()); }
 
-std::vector<ProvenanceLine> run_facts(const RunConfig& config, const MarketSteps& market,
-                                      const RunFolder& folder) {
-  std::vector<ProvenanceLine> facts = making_facts(folder);
+Entries run_facts(const RunConfig& config, const MarketSteps& market, const RunFolder& folder) {
+  Entries facts = making_facts(folder);
   const auto delay_min = static_cast<std::size_t>(config.market.observation_delay_min);
   facts.insert(facts.end(),
                {{"program", program_text()},

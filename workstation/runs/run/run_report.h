@@ -24,8 +24,7 @@ std::string program_text();
 /// Reads prices from run.json and stage times from times.json, if present. With SOURCE_DATE_EPOCH
 /// (reproducible-builds.org) run, host, command and times are left out: the same run gives the same
 /// bytes.
-std::vector<ProvenanceLine> run_facts(const RunConfig& config, const MarketSteps& market,
-                                      const RunFolder& folder);
+Entries run_facts(const RunConfig& config, const MarketSteps& market, const RunFolder& folder);
 
 // Results of finished runs, for `run --json` and `runs compare`.
 

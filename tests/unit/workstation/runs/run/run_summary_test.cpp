@@ -173,18 +173,11 @@ TEST(RunSummaries, AnUnfinishedRunIsNamedWithTheRemedy) {
 
 using testing::MatchesRegex;
 
-std::string value_of(const std::vector<ProvenanceLine>& facts, const std::string& name) {
-  const auto found = std::ranges::find(facts, name, &ProvenanceLine::name);
-  return found == facts.end() ? "" : found->value;
-}
-
 class RunFacts : public testing::Test {
  protected:
   ~RunFacts() override { unsetenv("SOURCE_DATE_EPOCH"); }
 
-  std::vector<ProvenanceLine> facts() {
-    return run_facts(RunConfig{}, small_market(), RunFolder{folder_.file("")});
-  }
+  Entries facts() { return run_facts(RunConfig{}, small_market(), RunFolder{folder_.file("")}); }
 
   void put(const std::string& name, const std::string& text) const {
     (void)folder_.write(name, text);
@@ -196,32 +189,32 @@ class RunFacts : public testing::Test {
 TEST_F(RunFacts, PricesAreNamedWithTheirChecksum) {
   const auto prices = folder_.write("market.csv", "123456789");  // the check value of CRC-32
   put("run.json", "{\"prices\": \"" + prices + "\"}");
-  EXPECT_THAT(value_of(facts(), "prices"), Names("market.csv crc32 cbf43926 9"));
+  EXPECT_THAT(value_in(facts(), "prices"), Names("market.csv crc32 cbf43926 9"));
 }
 
 TEST_F(RunFacts, SayWhenWhereAndHow) {
   put("run.json", "{}");
   put("times.json", R"({"teacher": {"seconds": 12.25, "finished_utc": "x"}})");
-  const std::vector<ProvenanceLine> all = facts();
-  EXPECT_THAT(value_of(all, "date"), MatchesRegex("20..-..-..T..:..:..Z"));
-  EXPECT_THAT(value_of(all, "command"), Names("report_test"));
-  EXPECT_EQ(value_of(all, "run"),
+  const Entries all = facts();
+  EXPECT_THAT(value_in(all, "date"), MatchesRegex("20..-..-..T..:..:..Z"));
+  EXPECT_THAT(value_in(all, "command"), Names("report_test"));
+  EXPECT_EQ(value_in(all, "run"),
             std::filesystem::path(folder_.file("x")).parent_path().filename().string());
-  EXPECT_THAT(value_of(all, "program"), MatchesRegex("bess-train .*, commit .*"));
-  EXPECT_THAT(value_of(all, "span"), Names("2023-01-01 2023-02-28 40"));
-  EXPECT_THAT(value_of(all, "observation delay"), Names("1"));
-  EXPECT_EQ(value_of(all, "stages"), "teacher 12.2 s");
-  EXPECT_NE(value_of(all, "host"), "");
+  EXPECT_THAT(value_in(all, "program"), MatchesRegex("bess-train .*, commit .*"));
+  EXPECT_THAT(value_in(all, "span"), Names("2023-01-01 2023-02-28 40"));
+  EXPECT_THAT(value_in(all, "observation delay"), Names("1"));
+  EXPECT_EQ(value_in(all, "stages"), "teacher 12.2 s");
+  EXPECT_NE(value_in(all, "host"), "");
 }
 
 TEST_F(RunFacts, AFixedDateLeavesOutWhatDiffers) {
   put("run.json", "{}");
   put("times.json", R"({"teacher": {"seconds": 12.2, "finished_utc": "x"}})");
   setenv("SOURCE_DATE_EPOCH", "1700000000", 1);
-  const std::vector<ProvenanceLine> all = facts();
-  EXPECT_EQ(value_of(all, "date"), "2023-11-14T22:13:20Z");
+  const Entries all = facts();
+  EXPECT_EQ(value_in(all, "date"), "2023-11-14T22:13:20Z");
   for (const char* name : {"run", "host", "command", "CPU time", "stages"}) {
-    EXPECT_EQ(value_of(all, name), "") << name;
+    EXPECT_EQ(value_in(all, name), "") << name;
   }
 }
 
