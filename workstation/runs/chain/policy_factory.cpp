@@ -12,25 +12,20 @@ namespace {
 
 constexpr std::string_view kCompiled = "compiled";
 
-/// Policies that own their model.
-std::shared_ptr<Policy> teacher_policy(Teacher teacher) {
-  struct Holder {
-    Teacher teacher;
-    TeacherPolicy policy{teacher};
-    explicit Holder(Teacher t) : teacher(std::move(t)) {}
-  };
-  const auto holder = std::make_shared<Holder>(std::move(teacher));
-  return {holder, &holder->policy};
+std::unique_ptr<Policy> teacher_policy(const Teacher& teacher) {
+  return std::make_unique<TeacherPolicy>(teacher);
 }
 
-std::shared_ptr<Policy> student_policy(StudentFile student) {
-  struct Holder {
-    StudentFile student;
-    std::unique_ptr<Policy> policy = exported_policy(student);
-    explicit Holder(StudentFile s) : student(std::move(s)) {}
+/// Policy that `make` returns, with the model that it uses.
+template <typename Model>
+std::shared_ptr<Policy> owning(Model model, std::unique_ptr<Policy> (*make)(const Model&)) {
+  struct Owner {
+    Model model;
+    std::unique_ptr<Policy> policy;
   };
-  const auto holder = std::make_shared<Holder>(std::move(student));
-  return {holder, holder->policy.get()};
+  const auto owner = std::make_shared<Owner>(Owner{std::move(model), nullptr});
+  owner->policy = make(owner->model);
+  return {owner, owner->policy.get()};
 }
 
 std::shared_ptr<Policy> model_policy(const std::string& path, const MarketSteps* market) {
@@ -47,11 +42,11 @@ std::shared_ptr<Policy> model_policy(const std::string& path, const MarketSteps*
   if (is_teacher_file(path)) {
     Teacher teacher = load_teacher(path);
     require_day_ahead(teacher.context);
-    return teacher_policy(std::move(teacher));
+    return owning(std::move(teacher), teacher_policy);
   }
   StudentFile student = load_student(path);
   require_day_ahead(student.net.context);
-  return student_policy(std::move(student));
+  return owning(std::move(student), exported_policy);
 }
 
 }  // namespace
@@ -84,7 +79,7 @@ void require_outlook(const std::vector<std::string>& names, const std::string& d
 std::shared_ptr<Policy> make_policy(const std::string& name, const MarketSteps& market,
                                     const BatteryParameters& battery) {
   if (const auto baseline = make_baseline(name, market, battery)) return baseline;
-  if (name == kCompiled) return student_policy(compiled_student());
+  if (name == kCompiled) return owning(compiled_student(), exported_policy);
   return model_policy(name, &market);
 }
 
