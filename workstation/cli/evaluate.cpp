@@ -68,36 +68,25 @@ struct Records {
   }
 };
 
-/// One row per policy in one accounting; empty when it was not evaluated.
-using Rows = std::vector<ComparisonRow>;
-
-Json evaluation_json(const NamedEvaluation& named, std::size_t index, const Rows& rows,
-                     const Rows& carried, const EvaluateArguments& options) {
-  Json json = answer("evaluation", {{"policy", named.name},
-                                    {"split", options.split},
-                                    {"date", text_or_null(options.date)},
-                                    {key::kCarrySoc, options.carry_soc}});
-  add_figures(rows[index], json);
-  json.set("description", text_or_null(named.description));
-  if (carried.empty()) {
-    json.set(key::kCarriedOver, Json::null());
-    return json;
-  }
-  Json other = Json::object({{key::kCarrySoc, true}});
-  add_figures(carried[index], other);
-  json.set(key::kCarriedOver, std::move(other));
-  return json;
-}
-
 /// One line per policy; with several policies, carried-over figures are nested.
 void print_json(const std::vector<NamedEvaluation>& results, const NamedEvaluation& foresight,
                 const EvaluateArguments& options) {
-  const Rows reset = comparison_rows(results, &NamedEvaluation::day_reset, &foresight);
-  const Rows carried = comparison_rows(results, &NamedEvaluation::carried_over, &foresight);
+  const auto reset = comparison_rows(results, &NamedEvaluation::day_reset, &foresight);
+  const auto carried = comparison_rows(results, &NamedEvaluation::carried_over, &foresight);
   for (std::size_t i = 0; i < results.size(); ++i) {
-    fmt::print("{}\n", evaluation_json(results[i], i, options.carry_soc ? carried : reset,
-                                       options.carry_soc ? Rows{} : carried, options)
-                           .line());
+    Json json = answer("evaluation", {{"policy", results[i].name},
+                                      {"split", options.split},
+                                      {"date", text_or_null(options.date)},
+                                      {key::kCarrySoc, options.carry_soc}});
+    add_figures(options.carry_soc ? carried[i] : reset[i], json);
+    json.set("description", text_or_null(results[i].description));
+    Json nested = Json::null();
+    if (!options.carry_soc && !carried.empty()) {
+      nested = Json::object({{key::kCarrySoc, true}});
+      add_figures(carried[i], nested);
+    }
+    json.set(key::kCarriedOver, std::move(nested));
+    fmt::print("{}\n", json.line());
   }
 }
 
