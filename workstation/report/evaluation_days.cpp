@@ -89,16 +89,15 @@ std::string judged_days_text(const JudgedDays& judged) {
 }
 
 Json judged_days_json(const JudgedDays& judged) {
-  Json json = Json::object({{"split", split_name(judged.split)},
-                            {"local_days", local_days_of(judged)},
-                            {"days", judged.dates.size()},
-                            {"months", judged.months()},
-                            {"from", judged.dates.front()},
-                            {"to", judged.dates.back()}});
-  const bool is_known = !judged.last_learnt.empty();
-  json.set("last_learnt_day", is_known ? Json(judged.last_learnt) : Json::null());
-  json.set("days_before_last_learnt", is_known ? Json(judged.before_last_learnt()) : Json::null());
-  return json;
+  return Json::object({{"split", split_name(judged.split)},
+                       {"local_days", local_days_of(judged)},
+                       {"days", judged.dates.size()},
+                       {"months", judged.months()},
+                       {"from", judged.dates.front()},
+                       {"to", judged.dates.back()},
+                       {"last_learnt_day", text_or_null(judged.last_learnt)},
+                       {"days_before_last_learnt",
+                        value_or_null(!judged.last_learnt.empty(), judged.before_last_learnt())}});
 }
 
 namespace {
