@@ -47,12 +47,6 @@ StageRecord stage_of(const JsonValue& json, const RunFolder& folder) {
           entries_of(json["outputs"], folder), json["failed"].boolean().value_or(false)};
 }
 
-Entries marks_of(const std::vector<std::string>& names, const RunFolder& folder) {
-  Entries marks;
-  for (const std::string& name : names) marks.emplace_back(name, file_mark(folder.path / name));
-  return marks;
-}
-
 }  // namespace
 
 void add_figures(const RunFigures& figures, Json& json) {
@@ -80,6 +74,12 @@ std::string file_mark(const fs::path& path) {
     bytes += static_cast<std::uint64_t>(file.gcount());
   }
   return fmt::format("crc32 {:08x}, {} bytes", crc.value(), bytes);
+}
+
+Entries marks_of(const std::vector<std::string>& names, const RunFolder& folder) {
+  Entries marks;
+  for (const std::string& name : names) marks.emplace_back(name, file_mark(folder.path / name));
+  return marks;
 }
 
 RunConfig RunRecord::config(const RunFolder& folder) const {

@@ -49,6 +49,8 @@ struct RunFolder {
 
 /// "crc32 1234abcd, 4711 bytes" of the file as stored; empty when it cannot be read.
 std::string file_mark(const std::filesystem::path& path);
+/// The files `names` of a folder and their marks.
+Entries marks_of(const std::vector<std::string>& names, const RunFolder& folder);
 
 struct StageRecord {
   std::string name;

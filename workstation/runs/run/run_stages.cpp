@@ -189,13 +189,8 @@ void RunStages::go_through(const Stage& row) {
     return;
   }
   const auto start = std::chrono::steady_clock::now();
-  StageRecord stage{std::string(row.name), {}, {}, false};
-  for (const std::string& input : row.inputs) {
-    stage.inputs.emplace_back(input, file_mark(folder_.path / input));
-  }
-  for (const std::string& output : (this->*row.make)()) {
-    stage.outputs.emplace_back(output, file_mark(folder_.path / output));
-  }
+  StageRecord stage{std::string(row.name), marks_of(row.inputs, folder_), {}, false};
+  stage.outputs = marks_of((this->*row.make)(), folder_);
   stage.failed = std::exchange(unproved_, false);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   const bool failed = stage.failed;
