@@ -183,21 +183,39 @@ RunConfig config_of(SiteRow& site, const fs::path& folder, RunConfig config) {
   return config;
 }
 
-/// Training inputs of a class.
-struct SiteClass {
-  std::string name;   ///< 16 hexadecimal digits of its key
-  RunConfig config;   ///< at the canonical size
-  std::string rules;  ///< as one file; empty: none
-};
+/// Adds a rule file, named by its content.
+std::string keep_rules(SweepPlan& plan, const std::string& text) {
+  const std::string stem = fmt::format("{:016x}", fnv1a(text));
+  plan.rules[stem] = text;
+  return stem;
+}
 
-/// Adds the sites to the plan; returns their classes in the order of their first site. Throws
-/// UserError naming file, line and column.
-std::vector<SiteClass> read_sites(const SweepRequest& request, SweepPlan& plan) {
+/// "section.key" of "[section] key".
+std::string dotted(const std::string& listed) {
+  const std::size_t end = listed.find(']');
+  return listed.substr(1, end - 1) + "." + listed.substr(end + 2);
+}
+
+/// Settings of a class that differ from the sweep's configuration.
+Entries class_settings(const std::string& name, const RunConfig& config, const std::string& rules,
+                       SweepPlan& plan) {
+  Entries settings;
+  if (!rules.empty()) settings.emplace_back(setting::kRules, keep_rules(plan, rules));
+  settings.emplace_back(setting::kClass, name);
+  for (const ChangedKey& changed : changed_keys(config, plan.base)) {
+    settings.emplace_back(dotted(changed.key), changed.value);
+  }
+  return settings;
+}
+
+/// Adds the sites to the plan; returns the settings of their classes in the order of their first
+/// site. Throws UserError naming file, line and column.
+std::vector<Entries> read_sites(const SweepRequest& request, SweepPlan& plan) {
   const fs::path csv = request.sites;
   const std::string text = read_file(csv);
   const CsvTable table(text, csv.string());
   const Columns columns = columns_of(csv_header(text), table, csv.string());
-  std::vector<SiteClass> classes;
+  std::vector<Entries> classes;
   std::map<std::string, std::string> names;  // of keys
   std::set<std::string> ids, used;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
@@ -222,7 +240,7 @@ std::vector<SiteClass> read_sites(const SweepRequest& request, SweepPlan& plan) 
       const auto [at, is_new] = names.try_emplace(key, fmt::format("{:016x}", fnv1a(key)));
       if (is_new && !used.insert(at->second).second)
         fail("hash collision of two classes: {}", at->second);
-      if (is_new) classes.push_back({at->second, learnt, rules_text});
+      if (is_new) classes.push_back(class_settings(at->second, learnt, rules_text, plan));
       plan.sites.push_back(
           {id, own["region"], config.battery.power_w_max, config.battery.capacity_wh, at->second});
     } catch (const UserError& error) {
@@ -287,30 +305,6 @@ std::string format_tasks(const std::vector<SweepTask>& tasks) {
 /// Limit of the six digits in folder names.
 constexpr std::size_t kTasksMax = 999'999;
 
-/// Adds a rule file, named by its content.
-std::string keep_rules(SweepPlan& plan, const std::string& text) {
-  const std::string stem = fmt::format("{:016x}", fnv1a(text));
-  plan.rules[stem] = text;
-  return stem;
-}
-
-/// "section.key" of "[section] key".
-std::string dotted(const std::string& listed) {
-  const std::size_t end = listed.find(']');
-  return listed.substr(1, end - 1) + "." + listed.substr(end + 2);
-}
-
-/// Settings of a class that differ from the sweep's configuration.
-Entries class_settings(const SiteClass& one, SweepPlan& plan) {
-  Entries settings;
-  if (!one.rules.empty()) settings.emplace_back(setting::kRules, keep_rules(plan, one.rules));
-  settings.emplace_back(setting::kClass, one.name);
-  for (const ChangedKey& changed : changed_keys(one.config, plan.base)) {
-    settings.emplace_back(dotted(changed.key), changed.value);
-  }
-  return settings;
-}
-
 /// One entry per class; without fleet members, the plan's own rules.
 std::vector<Entries> class_axis(const SweepRequest& request, SweepPlan& plan) {
   const RuleSet rules = request.rules.read();
@@ -320,8 +314,7 @@ std::vector<Entries> class_axis(const SweepRequest& request, SweepPlan& plan) {
   }
   if (!rules.empty())
     fail("{}: with --sites, set rules in the column \"rules\" instead of --rules", request.sites);
-  std::vector<Entries> axis;
-  for (const SiteClass& one : read_sites(request, plan)) axis.push_back(class_settings(one, plan));
+  std::vector<Entries> axis = read_sites(request, plan);
   plan.classes = axis.size();
   return axis;
 }
