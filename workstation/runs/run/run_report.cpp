@@ -129,10 +129,10 @@ Entries run_facts(const RunConfig& config, const MarketSteps& market, const RunF
 namespace {
 
 const NamedEvaluation& exported(const RunSummary& run) {
-  const NamedEvaluation* found = find_evaluation(run.evaluations, kExportedPolicy);
+  const NamedEvaluation* found = find_evaluation(run.evaluations, kCorrectedName);
   if (found == nullptr) {
     fail("{}: \"{}\" is missing; repeat the run", run.folder.file(run_file::kDays).string(),
-         kExportedPolicy);
+         kCorrectedName);
   }
   return *found;
 }
@@ -288,13 +288,13 @@ std::string format_runs_table(const std::vector<RunSummary>& runs) {
   std::string text = fmt::format(
       "Profit of the {} of each run on its test days, EUR per day per MWh of capacity\n"
       "{:<{}} {:>5} {:>5} {:>5} {:>8} {:>6} {:>8} {:>8} {:>6} {:>8} {:>11} {:>9} {:>8} {:>9}\n",
-      kExportedPolicy, "run", width, "seed", "rules", "days", "carried", "s.e.", "by month", "gain",
+      kCorrectedName, "run", width, "seed", "rules", "days", "carried", "s.e.", "by month", "gain",
       "s.e.", "by month", kReferenceWearHead, "foresight", "reset", "weights");
   const Evaluation& first = exported(runs.front()).carried_over;
   for (const RunSummary& run : runs) {
     const NamedEvaluation& student = exported(run);
     const auto rows = comparison_rows(run.evaluations, &NamedEvaluation::carried_over);
-    const auto row = std::ranges::find(rows, kExportedPolicy, &ComparisonRow::name);
+    const auto row = std::ranges::find(rows, kCorrectedName, &ComparisonRow::name);
     const auto over_first =
         &run == &runs.front() ? std::nullopt : gain_over_run(student.carried_over, first);
     text += fmt::format(

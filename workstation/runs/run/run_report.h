@@ -28,9 +28,6 @@ Entries run_facts(const RunConfig& config, const MarketSteps& market, const RunF
 
 // Results of finished runs, for `run --json` and `runs compare`.
 
-/// Policy that a run exports.
-inline constexpr const char* kExportedPolicy = "corrected student";
-
 struct RunSummary {
   RunFolder folder;
   RunRecord record;

@@ -50,7 +50,7 @@ std::string state_text(const RunSummary& run) {
 }
 
 const Evaluation* exported_days(const RunSummary& run, EvaluationField field) {
-  const NamedEvaluation* found = find_evaluation(run.evaluations, kExportedPolicy);
+  const NamedEvaluation* found = find_evaluation(run.evaluations, kCorrectedName);
   return found == nullptr ? nullptr : &(found->*field);
 }
 
@@ -68,7 +68,7 @@ std::vector<Cell> figure_cells(const RunSummary& run, const Evaluation* first) {
   const Evaluation* carried = exported_days(run, &NamedEvaluation::carried_over);
   if (carried == nullptr || carried->days.empty()) return std::vector<Cell>(7, Cell{kNoValue});
   const auto rows = comparison_rows(run.evaluations, &NamedEvaluation::carried_over);
-  const auto row = std::ranges::find(rows, kExportedPolicy, &ComparisonRow::name);
+  const auto row = std::ranges::find(rows, kCorrectedName, &ComparisonRow::name);
   const double reset =
       exported_days(run, &NamedEvaluation::day_reset)->profit_eur_per_day_per_mwh();
   return {number_cell(static_cast<double>(row->days), 0),
@@ -85,7 +85,7 @@ std::vector<Cell> figure_cells(const RunSummary& run, const Evaluation* first) {
 
 SortTable run_table(const std::vector<RunSummary>& runs, const fs::path& page) {
   SortTable table{"runs",
-                  fmt::format("Profit of the {} of each run on its test days", kExportedPolicy),
+                  fmt::format("Profit of the {} of each run on its test days", kCorrectedName),
                   {"Run", "State", "Proof", "Rules", "Seed", "Days", "Carried over, EUR/day/MWh",
                    "Gain, EUR/day/MWh", "EUR of this battery per day", "At wear 10, EUR/day/MWh",
                    "% of foresight", "Same charge each day, EUR/day/MWh", "Weights"},

@@ -16,6 +16,7 @@
 #include "shared/host/json.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
+#include "workstation/base/answer.h"
 #include "workstation/data/env/day_errors.h"
 #include "workstation/data/market/series/plausibility.h"
 #include "workstation/runs/chain/chain_steps.h"
@@ -149,23 +150,22 @@ struct Column {
   int decimals;
   bool is_reset_profit = false;  ///< from the day-reset row
 };
-constexpr const char* kProfit = "profit_eur_per_day_per_mwh";
 constexpr const char* kCycles = "cycles_per_day";
 constexpr Column kColumns[] = {{"days", 0},
-                               {kProfit, 4},
-                               {"profit_standard_error", 4},
-                               {"profit_standard_error_by_month", 4},
-                               {"gain_eur_per_day_per_mwh", 4},
+                               {key::kProfit, 4},
+                               {key::kProfitError, 4},
+                               {key::kProfitErrorByMonth, 4},
+                               {key::kGain, 4},
                                {"profit_at_wear_10_eur_per_day_per_mwh", 4},
                                {"profit_day_reset_eur_per_day_per_mwh", 4, true},
                                {kCycles, 4},
-                               {"share_of_foresight", 6}};
+                               {key::kShareOfForesight, 6}};
 
 std::string columns_of(const CsvTable& table, std::size_t carried, std::size_t reset) {
   std::string text;
   for (const auto& [name, decimals, is_reset_profit] : kColumns) {
     const std::size_t row = is_reset_profit ? reset : carried;
-    const std::size_t at = table.column(is_reset_profit ? kProfit : name);
+    const std::size_t at = table.column(is_reset_profit ? key::kProfit : name);
     const bool is_known = !table.text(row, at).empty();
     text += is_known ? fmt::format(",{:.{}f}", table.number(row, at), decimals) : std::string(",");
   }
@@ -178,18 +178,18 @@ TaskFigures figures_in(const fs::path& result) {
   const CsvTable table = CsvTable::read(name);
   std::optional<std::size_t> reset, carried;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
-    if (table.text(row, table.column("policy")) != kExportedPolicy) continue;
-    (table.text(row, table.column("carry_soc")) == "true" ? carried : reset) = row;
+    if (table.text(row, table.column("policy")) != kCorrectedName) continue;
+    (table.text(row, table.column(key::kCarrySoc)) == "true" ? carried : reset) = row;
   }
   if (!reset || !carried)
     fail("{}: two rows of the {} expected; delete the folder and repeat the task", name,
-         kExportedPolicy);
+         kCorrectedName);
   const std::string record = (result / run_file::kRecord).string();
   const Json json = Json::parse(read_file(record));
   const std::string hash = json.value()["figures"]["weights_hash"].text_or("");
   if (hash.empty())
     fail("{}: weights_hash is missing; delete the folder and repeat the task", record);
-  return {table.number(*carried, table.column(kProfit)),
+  return {table.number(*carried, table.column(key::kProfit)),
           table.number(*carried, table.column(kCycles)),
           columns_of(table, *carried, *reset) + "," + hash};
 }

@@ -35,7 +35,7 @@ Evaluation evaluation_of(double profit_eur) {
 
 std::vector<NamedEvaluation> evaluations_of(double profit_eur) {
   return {{"rbc", evaluation_of(1), evaluation_of(2)},
-          {kExportedPolicy, evaluation_of(profit_eur), evaluation_of(2 * profit_eur)}};
+          {kCorrectedName, evaluation_of(profit_eur), evaluation_of(2 * profit_eur)}};
 }
 
 RunSummary run_of(const char* seed, double profit_eur) {
@@ -81,7 +81,7 @@ TEST(RunSummaries, TheSameFigureIsEverywhere) {
   EXPECT_EQ(told["carry_soc"].boolean(), true);
   EXPECT_EQ(told["charge_price_eur_per_mwh"].number(), 87.3);
   for (const JsonValue row : json.value()["policies"]) {
-    if (row["policy"].text_or("") != std::string_view(kExportedPolicy)) continue;
+    if (row["policy"].text_or("") != std::string_view(kCorrectedName)) continue;
     const bool is_carried = row["carry_soc"].boolean() == true;
     EXPECT_EQ(fmt::format("{:.1f}", row["profit_eur_per_day_per_mwh"].number().value()),
               is_carried ? figure : friendlier);

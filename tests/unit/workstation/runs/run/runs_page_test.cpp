@@ -26,7 +26,7 @@ class RunsPage : public testing::Test {
     Evaluation days;
     days.capacity_mwh = 8;
     days.days = {{"2023-01-26", 8, 1, 2, 0.5, 3}, {"2023-02-26", eur, 1, 2, 0.5, 3}};
-    write_file(folder.file(run_file::kDays), evaluation_days_csv({{kExportedPolicy, days, days}}));
+    write_file(folder.file(run_file::kDays), evaluation_days_csv({{kCorrectedName, days, days}}));
     write_file(folder.file(run_file::kReport), "<html></html>");
     RunRecord record;
     record.identity = {{"prices", "the same"}, {"seed", "1"}, {"[train] method", method}};

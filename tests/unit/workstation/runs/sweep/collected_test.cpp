@@ -23,7 +23,7 @@ class Collected : public testing::Test {
     days.capacity_mwh = 8;
     days.days = {{"2023-01-26", eur, 1, 2, 0.5, 3}, {"2023-02-26", eur, 1, 2, 0.5, 3}};
     write_file(result / run_file::kTable,
-               comparison_csv({{"rbc", days, days}, {kExportedPolicy, days, days}}));
+               comparison_csv({{"rbc", days, days}, {kCorrectedName, days, days}}));
     write_file(result / run_file::kRecord, R"({"figures":{"weights_hash":"0123abcd"}})");
     write_file(result / run_file::kTimes, R"({"teacher":{"seconds":2.5},"header":{"seconds":1}})");
     write_file(result / run_file::kStudent, "{}");
