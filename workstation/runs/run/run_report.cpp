@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
-#include <iterator>
 
 #include "shared/host/embed/build_info.h"
 #include "shared/host/file.h"
@@ -35,13 +34,9 @@ namespace fs = std::filesystem;
 /// Command line of this process.
 std::string command_line() {
   std::ifstream file("/proc/self/cmdline", std::ios::binary);
-  const std::string words(std::istreambuf_iterator<char>(file), {});
   std::string line;
-  for (std::size_t at = 0; at < words.size();) {
-    const std::string word = words.substr(at, words.find('\0', at) - at);
-    if (at > 0) line += ' ';
-    line += shell_word(at == 0 ? fs::path(word).filename().string() : word);
-    at += word.size() + 1;
+  for (std::string word; std::getline(file, word, '\0');) {
+    line += line.empty() ? shell_word(fs::path(word).filename().string()) : ' ' + shell_word(word);
   }
   return line;
 }
