@@ -12,6 +12,9 @@ namespace bess {
 namespace {
 
 constexpr std::string_view kUnder = "plain student under ";
+constexpr const char* kHeadlineKeys =
+    "days,months,profit_eur_per_day_per_mwh,profit_standard_error,profit_standard_error_by_month,"
+    "charge_price_eur_per_mwh,charge_value_eur_per_day_per_mwh";
 
 /// One rule, all rules, the correction, or both.
 struct Part {
@@ -160,11 +163,9 @@ std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluati
   if (exported == nullptr) return std::nullopt;
   const Evaluation& days = exported->carried_over;
   const Evaluation& reset = exported->day_reset;
-  Headline headline{.student = exported->name,
-                    .days = days.days.size(),
-                    .profit = days.profit_eur_per_day_per_mwh(),
-                    .errors = days.errors(),
-                    .charge_left = days.charge_left()};
+  const NamedEvaluation* bound = carried_over_by(evaluations, kForesightName);
+  Headline headline{comparison_row(exported->name, days, nullptr,
+                                   bound == nullptr ? nullptr : &bound->carried_over)};
   if (!reset.days.empty()) headline.reset_profit = reset.profit_eur_per_day_per_mwh();
   const auto add = [&](const std::string& name, const std::string& meaning) {
     const NamedEvaluation* other = carried_over_by(evaluations, name);  // null if not evaluated
@@ -172,16 +173,12 @@ std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluati
   };
   add(kPlainName, "the student without correction");
   for (const std::string& rival : rival_names()) add(rival, find_baseline(rival)->meaning);
-  const bool is_finished = headline.student == kCorrectedName;
+  const bool is_finished = headline.name == kCorrectedName;
   if (const auto prices = rule_prices_of(evaluations)) {
     if (is_finished) headline.correction = prices->correction;
     headline.rules = prices->together;
   } else if (is_finished && carried_over_by(evaluations, kPlainName) != nullptr) {
     headline.correction = headline.gains.front();
-  }
-  if (const NamedEvaluation* bound = carried_over_by(evaluations, kForesightName)) {
-    const double most = bound->carried_over.profit_eur_per_day_per_mwh();
-    if (most > 0) headline.foresight_share = headline.profit / most;
   }
   return headline;
 }
@@ -189,7 +186,7 @@ std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluati
 std::string headline_text(const Headline& headline) {
   return fmt::format(
       "The {} earned {:.1f} EUR per day per MWh of capacity{} on {} test days.\n{}\n",
-      headline.student, headline.profit, errors_text(headline.errors), headline.days,
+      headline.name, headline.profit, errors_text(headline.errors), headline.days,
       headline_accounting(headline));
 }
 
@@ -208,16 +205,8 @@ std::string gains_text(const Headline& headline) {
 }
 
 Json headline_json(const Headline& headline) {
-  Json json = Json::object({{"policy", headline.student},
-                            {key::kCarrySoc, true},
-                            {"days", headline.days},
-                            {"months", headline.errors.months},
-                            {key::kProfit, Decimals{headline.profit, 4}},
-                            {key::kProfitError, Decimals{headline.errors.plain, 4}},
-                            {key::kProfitErrorByMonth, Decimals{headline.errors.by_month, 4}}});
-  json.set("charge_price_eur_per_mwh", Decimals{headline.charge_left.price_eur_per_mwh, 4});
-  json.set("charge_value_eur_per_day_per_mwh",
-           Decimals{headline.charge_left.value_eur_per_day_per_mwh, 4});
+  Json json = Json::object({{"policy", headline.name}, {key::kCarrySoc, true}});
+  figures_table({headline}).only(kHeadlineKeys).add_row(0, json);
   json.set("profit_from_same_soc_eur_per_day_per_mwh",
            Decimals{headline.reset_profit.value_or(std::nan("")), 4});
   return json;
@@ -228,7 +217,7 @@ std::string headline_html(const Headline& headline) {
       "<p class=\"figure\"><strong id=\"headline-profit\">{:.1f}</strong><span>EUR per day per MWh "
       "of capacity{}<br>{}, {} test days, SoC carried over</span></p>\n"
       "<p class=\"note\" id=\"headline-accounting\">{}</p>\n<ul class=\"badges\">\n",
-      headline.profit, errors_text(headline.errors), headline.student, headline.days,
+      headline.profit, errors_text(headline.errors), headline.name, headline.days,
       html_escaped(headline_accounting(headline)));
   if (headline.correction) {
     text += fmt::format("<li id=\"price-of-correction\">{}; EUR per day per MWh of capacity</li>\n",

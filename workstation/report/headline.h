@@ -34,16 +34,10 @@ struct HeadlineGain {
 HeadlineGain gain_over(const NamedEvaluation& exported, const NamedEvaluation& other,
                        std::string_view meaning);
 
-/// SoC carried over, final charge valued; EUR per day per MWh of capacity, net of the configured
-/// wear.
-struct Headline {
-  std::string student;  ///< kCorrectedName or kUnprovedName
-  std::size_t days;
-  double profit;
-  DayErrors errors;                      ///< of the profit
+/// Row of kCorrectedName or kUnprovedName, SoC carried over, final charge valued, net of the
+/// configured wear.
+struct Headline : ComparisonRow {
   std::optional<double> reset_profit{};  ///< day-reset accounting
-  ChargeLeft charge_left;                ///< part of the profit
-  std::optional<double> foresight_share{};
   /// Over the plain student under the rules: minus the cost of the correction.
   std::optional<HeadlineGain> correction{};
   std::optional<HeadlineGain> rules{};  ///< their effect on the plain student; none without rules
