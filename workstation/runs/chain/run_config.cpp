@@ -229,39 +229,6 @@ void require_plausible(const RunConfig& config, const std::string& name) {
   }
 }
 
-void check_relations(const RunConfig& config, const std::string& name) {
-  if (const char* wrong = battery_contradiction(config.battery)) {
-    fail("{}: [battery] {}", name, wrong);
-  }
-  if (config.initial_soc_frac < config.battery.soc_min_frac ||
-      config.initial_soc_frac > config.battery.soc_max_frac) {
-    fail("{}: [battery] initial_soc {:g} is outside soc_min {:g} .. soc_max {:g}", name,
-         config.initial_soc_frac, config.battery.soc_min_frac, config.battery.soc_max_frac);
-  }
-  if (config.train.value_min_eur_per_h >= config.train.value_max_eur_per_h) {
-    fail("{}: [train] value_min_eur_per_h must be below value_max_eur_per_h", name);
-  }
-  if (config.train.residual && config.train.horizon != Horizon::kContinuing) {
-    fail("{}: [train] horizon = \"day\" needs residual = false: the SDP has no end of day", name);
-  }
-  const TrainOptions& train = config.train;
-  if (train.context == ContextKind::kOutlook &&
-      (!train.residual || train.source != Source::kCounterfactual)) {
-    fail(
-        "{}: [train] context = \"outlook\" needs residual = true and source = "
-        "\"counterfactual\", because the network is a residual on the plan; or set context = "
-        "\"level\"",
-        name);
-  }
-  if (config.train.residual && config.train.atoms % 2 == 0) {
-    fail("{}: [train] residual needs an odd number of atoms, not {}: the middle one is zero", name,
-         config.train.atoms);
-  }
-  if (!config.distil.correction.thresholds.are_ordered()) {
-    fail("{}: [correction] low_price_eur_per_mwh must be below high_price_eur_per_mwh", name);
-  }
-}
-
 /// Applies a document; unknown keys are an error. Throws UserError.
 void apply_document(const TomlValue& document, const std::vector<Key>& keys) {
   std::string error;
@@ -316,7 +283,36 @@ void apply_config_text(RunConfig& config, std::string_view text, const std::stri
 }
 
 void require_consistent(const RunConfig& config, const std::string& name) {
-  check_relations(config, name);
+  if (const char* wrong = battery_contradiction(config.battery)) {
+    fail("{}: [battery] {}", name, wrong);
+  }
+  if (config.initial_soc_frac < config.battery.soc_min_frac ||
+      config.initial_soc_frac > config.battery.soc_max_frac) {
+    fail("{}: [battery] initial_soc {:g} is outside soc_min {:g} .. soc_max {:g}", name,
+         config.initial_soc_frac, config.battery.soc_min_frac, config.battery.soc_max_frac);
+  }
+  if (config.train.value_min_eur_per_h >= config.train.value_max_eur_per_h) {
+    fail("{}: [train] value_min_eur_per_h must be below value_max_eur_per_h", name);
+  }
+  if (config.train.residual && config.train.horizon != Horizon::kContinuing) {
+    fail("{}: [train] horizon = \"day\" needs residual = false: the SDP has no end of day", name);
+  }
+  const TrainOptions& train = config.train;
+  if (train.context == ContextKind::kOutlook &&
+      (!train.residual || train.source != Source::kCounterfactual)) {
+    fail(
+        "{}: [train] context = \"outlook\" needs residual = true and source = "
+        "\"counterfactual\", because the network is a residual on the plan; or set context = "
+        "\"level\"",
+        name);
+  }
+  if (config.train.residual && config.train.atoms % 2 == 0) {
+    fail("{}: [train] residual needs an odd number of atoms, not {}: the middle one is zero", name,
+         config.train.atoms);
+  }
+  if (!config.distil.correction.thresholds.are_ordered()) {
+    fail("{}: [correction] low_price_eur_per_mwh must be below high_price_eur_per_mwh", name);
+  }
   require_plausible(config, name);
 }
 
