@@ -206,11 +206,9 @@ FleetRun run_fleet(const DrawnMarket& market, const std::vector<FleetPart>& flee
       run.prices.indicative[t] =
           fleet_price(options.formula, path, m, settled_short, mean_mw, previous_mw);
     }
-    const std::size_t last = (q + 1) * kMinutesPerQuarterHour - 1;
-    std::fill(
-        run.prices.settled.begin() + static_cast<std::ptrdiff_t>(last) + 1 - kMinutesPerQuarterHour,
-        run.prices.settled.begin() + static_cast<std::ptrdiff_t>(last) + 1,
-        run.prices.indicative[last]);
+    const std::size_t first = q * kMinutesPerQuarterHour;
+    std::fill_n(run.prices.settled.begin() + static_cast<std::ptrdiff_t>(first),
+                kMinutesPerQuarterHour, run.prices.indicative[first + kMinutesPerQuarterHour - 1]);
     run.imbalance_mw.push_back(path.imbalance_mw.back() + mean_mw);
     previous_mw = mean_mw;
   }
