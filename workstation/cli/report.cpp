@@ -35,9 +35,8 @@ void run_report(const std::string& path, const std::string& prices) {
          record.day_ahead, record.value(kDayAheadKey));
   }
   const FolderLock lock(folder.path);
-  RunStages stages(folder, std::move(record), series, stderr);
-  stages.report_again();
-  fmt::print("{}\n{}/report.html\n", stages.summary(), path);
+  RunStages(folder, std::move(record), series, stderr).report_again();
+  fmt::print("{}\n{}/report.html\n", read_file(folder.file(run_file::kSummary)), path);
 }
 
 }  // namespace

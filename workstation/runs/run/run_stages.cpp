@@ -256,8 +256,6 @@ void RunStages::report_again() {
   go_through(stage_named(kReportStage));
 }
 
-std::string RunStages::summary() const { return read_file(path(kSummary)); }
-
 const Teacher& RunStages::teacher() {
   if (!teacher_) teacher_ = load_teacher(path(kTeacher));
   return *teacher_;

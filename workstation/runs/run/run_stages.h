@@ -26,8 +26,6 @@ class RunStages {
   void finish();
   /// Regenerates the report. Throws UserError naming missing stages.
   void report_again();
-  /// Final table.
-  [[nodiscard]] std::string summary() const;
   /// Market of the days that the run may use.
   [[nodiscard]] const MarketSteps& market() const { return market_; }
 
