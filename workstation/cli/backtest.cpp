@@ -224,7 +224,6 @@ void add_backtest_command(ProgramCommand& app) {
   ProgramCommand command = app.subcommand(
       "backtest", "walk-forward backtest: fit on a window, trade the next month, repeat");
   command.option("--prices", options->prices, "minute files or downloads; periods may be separate")
-      .value_name("FILE")
       .required();
   options->price_input.add(command);
   command.option("--out", options->out, "folder for results and students")
@@ -235,7 +234,6 @@ void add_backtest_command(ProgramCommand& app) {
               std::string("policies; gains are relative to the first. ") + kChainName +
                   " is the whole chain, retrained for each month, " + kTeacherName +
                   " its teacher; the others: " + policy_help())
-      .value_name("POLICY")
       .with_default();
   command
       .option("--window-days", options->plan.window_days, "training window before each month, days")

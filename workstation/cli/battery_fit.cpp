@@ -128,13 +128,10 @@ void add_battery_commands(ProgramCommand& app) {
   auto options = std::make_shared<FitArguments>();
   ProgramCommand command = battery.subcommand(
       "fit", "fit efficiency, taper, cold limits and standby power to a controller's log");
-  command
-      .option("--log", options->logs, "controller logs (bess-edge log --csv); several are joined")
-      .value_name("FILE");
-  command
-      .option("--steps", options->steps,
-              "step response from bess-edge map check --steps; copied to --out")
-      .value_name("FILE");
+  command.option("--log", options->logs,
+                 "controller logs (bess-edge log --csv); several are joined");
+  command.option("--steps", options->steps,
+                 "step response from bess-edge map check --steps; copied to --out");
   command.option(
       "--config", options->config,
       "configuration with the nameplate values in [battery] (default: the default battery)");

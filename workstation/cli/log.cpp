@@ -62,12 +62,11 @@ void add_log_compare(ProgramCommand& log) {
   ProgramCommand command =
       log.subcommand("compare", "compare the log with other policies in the same control cycles");
   options->input.add(command, true);
-  command
-      .option("--policy", options->policies,
-              "rbc, rbc:LOW:HIGH, compiled, a student file or run folder (default: a rule at the "
-              "quartiles of the compiled student's training prices, and compiled); foresight is "
-              "always added")
-      .value_name("POLICY");
+  command.option(
+      "--policy", options->policies,
+      "rbc, rbc:LOW:HIGH, compiled, a student file or run folder (default: a rule at the "
+      "quartiles of the compiled student's training prices, and compiled); foresight is "
+      "always added");
   command.flag("--json", options->json, "JSON, one line per policy, this battery first");
   command.footer(
       "This battery is accounted as by bess-edge earned, less [costs] and wear. The others are\n"

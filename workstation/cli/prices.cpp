@@ -126,7 +126,6 @@ void add_prices_reconstruct(ProgramCommand& prices) {
       .option("--quarter-hours", options->files,
               "settled quarter-hours: ods047 or ods134 (CSV or JSON), tidy CSV, ENTSO-E A85 "
               "(XML), or output of 'prices import'; plain or .gz")
-      .value_name("FILE")
       .required();
   options->price_input.add(command);
   command.option("--seed", options->seed, "random seed").non_negative().with_default();
@@ -294,11 +293,9 @@ void add_prices_fetch(ProgramCommand& prices) {
   command.option("--zone", options->zone, "bidding zone of --day-ahead (default BE)")
       .value_name("ZONE")
       .needs("--day-ahead");
-  command
-      .option("--base-url", options->base_url,
-              fmt::format("API root (default {}; of --day-ahead {})", kEliaBaseUrl,
-                          kEnergyChartsBaseUrl))
-      .value_name("URL");
+  command.option(
+      "--base-url", options->base_url,
+      fmt::format("API root (default {}; of --day-ahead {})", kEliaBaseUrl, kEnergyChartsBaseUrl));
   command.footer(
       "After an interruption, repeat the command: finished months are kept in OUT.fetch.\n"
       "Rows are counted against the calendar and the server's total. Elia's minutes have gaps in\n"

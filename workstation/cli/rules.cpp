@@ -287,7 +287,6 @@ void add_rules_price(ProgramCommand& rules) {
   command
       .option("--policy", options->policy,
               std::string("policy to which the rules are applied; one of ") + policy_help())
-      .value_name("POLICY")
       .with_default();
   command.option("--split", options->split, "traded days of --prices")
       .one_of({kSplitNames.begin(), kSplitNames.end()})

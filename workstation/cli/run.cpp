@@ -83,10 +83,8 @@ void add_run_command(ProgramCommand& app) {
   command.option("--out", request.out, "run folder").value_name("DIR").required();
   command.flag("--resume", request.resume,
                "resume the run in --out; options not given keep their value");
-  command
-      .option("--from-teacher", request.from_teacher,
-              "skip training; use this teacher (file or run folder)")
-      .value_name("FILE");
+  command.option("--from-teacher", request.from_teacher,
+                 "skip training; use this teacher (file or run folder)");
   command.flag("--json", options->json, "one JSON object");
   request.common.add_all(command);
   command.footer(

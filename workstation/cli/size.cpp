@@ -89,7 +89,6 @@ void add_size_command(ProgramCommand& app) {
   ProgramCommand command =
       app.subcommand("size", "compare battery sizes and contracts: earnings and payback");
   command.option("--prices", options->prices, "minute files or downloads; periods may be separate")
-      .value_name("FILE")
       .required();
   options->price_input.add(command);
   command.option("--plan", options->plan, "TOML file (shared/manual/guides/which_battery.md)")

@@ -60,9 +60,7 @@ void add_sweep_plan(ProgramCommand& sweep) {
   SweepRequest& request = options->request;
   ProgramCommand command = sweep.subcommand("plan", "create and validate the tasks; no training");
   command.option("plan", request.plan, "TOML file: [grid], [[list]]").value_name("FILE");
-  command.option("--prices", request.prices, "minute file; the sweep keeps a copy")
-      .value_name("FILE")
-      .required();
+  command.option("--prices", request.prices, "minute file; the sweep keeps a copy").required();
   request.price_input.add(command);
   command.option("--out", options->out, "folder of the sweep").value_name("DIR").required();
   command.option("--set", request.sets, "grid axis: section.key=VALUE[,VALUE]")
@@ -72,20 +70,16 @@ void add_sweep_plan(ProgramCommand& sweep) {
       .with_default();
   command.option("--folds", request.folds, "one task per month, trained on the 120 days before")
       .one_of({"monthly"});
-  command
-      .option("--sites", request.sites,
-              "CSV of fleet members; those with equal settings share a student")
-      .value_name("FILE");
+  command.option("--sites", request.sites,
+                 "CSV of fleet members; those with equal settings share a student");
   command
       .option("--c-rate-step", request.c_rate_step_percent,
               "step of the C-rate, %; fleet members within one step share a student (default 0)")
       .range(0.0, 20.0)
       .needs("--sites");
   request.rules.add(command, "rule files of all tasks");
-  command
-      .option("--config", request.config,
-              "TOML file of all tasks; 'bess-train config' prints all keys")
-      .value_name("FILE");
+  command.option("--config", request.config,
+                 "TOML file of all tasks; 'bess-train config' prints all keys");
   command.flag("--full", request.full, "complete runs with plain student, figures and page");
   command.flag("--dry-run", options->dry_run, "print the plan without writing");
   command.footer(

@@ -24,10 +24,8 @@ fs::path shortened(const fs::path& path) {
 }  // namespace
 
 void CommonOptions::add_config(ProgramCommand& command) {
-  command
-      .option("--config", config_path,
-              "configuration file (TOML); 'bess-train config' prints all keys")
-      .value_name("FILE");
+  command.option("--config", config_path,
+                 "configuration file (TOML); 'bess-train config' prints all keys");
 }
 
 void CommonOptions::add_threads(ProgramCommand& command) {
