@@ -13,8 +13,8 @@
 #include "workstation/base/answer.h"
 #include "workstation/data/env/evaluate.h"
 #include "workstation/report/comparison.h"
+#include "workstation/report/figures/heat_map.h"
 #include "workstation/report/figures/html.h"
-#include "workstation/report/figures/policy_map.h"
 
 namespace bess {
 namespace {

@@ -9,7 +9,7 @@
 #include "workstation/correction/rules/ruled_policy.h"
 #include "workstation/correction/student/student_policy.h"
 #include "workstation/data/env/day_errors.h"
-#include "workstation/report/figures/policy_map.h"
+#include "workstation/report/figures/heat_map.h"
 #include "workstation/report/foresight_gap.h"
 #include "workstation/report/report.h"
 

@@ -11,9 +11,10 @@
 #include "shared/utc_text.h"
 #include "workstation/correction/rules/rule.h"
 #include "workstation/correction/student/student_policy.h"
+#include "workstation/correction/student/verify.h"
 #include "workstation/data/env/context_fit.h"
 #include "workstation/report/figures/curves.h"
-#include "workstation/report/figures/policy_map.h"
+#include "workstation/report/figures/heat_map.h"
 #include "workstation/report/headline.h"
 
 namespace bess {
@@ -120,7 +121,7 @@ int context_class_of(const RunResults& in, const MarketStep& step) {
 }
 
 /// Initial state of the map: most frequent class of the test days, at noon.
-PolicyContext first_map(const RunResults& in) {
+LatticeState first_map(const RunResults& in) {
   std::array<std::size_t, kContextClassCount + 1> steps{};
   for (const MarketDay& day : in.market.days_of(Split::kTest)) {
     for (const MarketStep& step : in.market.of(day)) {
@@ -128,7 +129,7 @@ PolicyContext first_map(const RunResults& in) {
     }
   }
   const auto most = std::max_element(steps.begin() + 1, steps.end()) - steps.begin();
-  return {static_cast<int>(most), kNoonQuarterHour, kMiddleMinute};
+  return lattice_context(kMiddleMinute, kNoonQuarterHour, static_cast<int>(most));
 }
 
 /// One row per interval of prices with the same action, at each SoC.
@@ -137,9 +138,10 @@ PictureTable map_table(const RunResults& in) {
                      {"student", "context_class", "quarter_hour", "minute", "soc_frac",
                       "price_from_eur_per_mwh", "price_to_eur_per_mwh", "action"},
                      {}};
-  const PolicyContext context = first_map(in);
+  const LatticeState context = first_map(in);
   const auto add = [&](const char* name, const StudentNet& net) {
-    const ActionGrid grid = student_grid(net, context);
+    ActionGrid grid;
+    fill_action_grid(net, context, false, grid);
     const auto prices = static_cast<int>(grid.size()) / kSocCount;
     for (int soc = 0; soc < kSocCount; ++soc) {
       const std::int8_t* row = &grid[static_cast<std::size_t>(soc) * prices];
@@ -303,7 +305,7 @@ Json counterexamples_json(const RunResults& in) {
   return list;
 }
 
-Json map_json(const PolicyContext& context) {
+Json map_json(const LatticeState& context) {
   return Json::object({{"context_class", context.context_class},
                        {"quarter_hour", context.quarter_hour},
                        {"minute", context.minute_of_quarter_hour}});

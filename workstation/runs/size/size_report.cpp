@@ -7,8 +7,8 @@
 #include "shared/host/file.h"
 #include "shared/host/text.h"
 #include "workstation/base/answer.h"
+#include "workstation/report/figures/heat_map.h"
 #include "workstation/report/figures/html.h"
-#include "workstation/report/figures/policy_map.h"
 
 namespace bess {
 namespace {

@@ -1,4 +1,4 @@
-#include "workstation/report/figures/policy_map.h"
+#include "workstation/report/figures/heat_map.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 
-#include "workstation/correction/student/certificate.h"
 #include "workstation/data/env/day_errors.h"
 #include "workstation/data/market/series/imbalance_price.h"
 #include "workstation/report/figures/html.h"
@@ -85,15 +84,6 @@ Json regime_marks(const std::vector<std::string>& dates) {
     marks.add(Json::list_of(static_cast<std::size_t>(from - dates.begin()), regime.change));
   }
   return marks;
-}
-
-ActionGrid student_grid(const StudentNet& net, const PolicyContext& context) {
-  ActionGrid grid;
-  fill_action_grid(
-      net,
-      lattice_context(context.minute_of_quarter_hour, context.quarter_hour, context.context_class),
-      false, grid);
-  return grid;
 }
 
 }  // namespace bess

@@ -1,12 +1,10 @@
-// Heat maps: a student's actions over price and SoC, and a result over two settings.
+// Heat map of a result over two settings, and starts of price regimes in a picture.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "shared/host/json.h"
-#include "shared/nn/student_net.h"
 
 namespace bess {
 
@@ -39,17 +37,5 @@ std::string heat_map_html(const std::vector<HeatPoint>& points, const HeatMapTex
 
 /// [index, change] of each boundary within `dates`, which are ascending.
 Json regime_marks(const std::vector<std::string>& dates);
-
-/// Fixed part of the state in a map.
-struct PolicyContext {
-  int context_class;           ///< 1..12
-  int quarter_hour;            ///< local, 0..95
-  int minute_of_quarter_hour;  ///< minute of the quarter-hour, 0..14
-};
-
-/// Action's integers, [SoC index][price index], kSocCount x kPriceCount.
-using ActionGrid = std::vector<std::int8_t>;
-
-ActionGrid student_grid(const StudentNet& net, const PolicyContext& context);
 
 }  // namespace bess
