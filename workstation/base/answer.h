@@ -4,6 +4,7 @@
 // unit. The options do not change the members of an answer.
 #pragma once
 
+#include <algorithm>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -19,7 +20,10 @@ namespace bess {
 using Entries = std::vector<std::pair<std::string, std::string>>;
 
 /// Empty without this name.
-std::string value_in(const Entries& entries, std::string_view name);
+inline std::string value_in(const Entries& entries, std::string_view name) {
+  const auto found = std::ranges::find(entries, name, &Entries::value_type::first);
+  return found == entries.end() ? std::string() : found->second;
+}
 
 /// Incremented when a member is removed or changes its meaning, not when one is added.
 inline constexpr int kSchemaVersion = 1;
@@ -38,10 +42,14 @@ inline constexpr const char* kCarriedOver = "carried_over";
 }  // namespace key
 
 /// {"schema_version": 1, "answer": "KIND"}, the first members of every answer, and `members`.
-Json answer(const char* kind, std::initializer_list<JsonMember> members = {});
+inline Json answer(const char* kind, std::initializer_list<JsonMember> members = {}) {
+  Json json = Json::object({{"schema_version", kSchemaVersion}, {"answer", kind}});
+  for (const JsonMember& member : members) json.set(member.key, std::move(member.value));
+  return json;
+}
 
 /// null for an empty text.
-Json text_or_null(const std::string& text);
+inline Json text_or_null(const std::string& text) { return value_or_null(!text.empty(), text); }
 
 /// "true" or "false", as in JSON, for tables.
 constexpr const char* truth(bool value) { return value ? "true" : "false"; }
