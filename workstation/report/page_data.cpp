@@ -10,8 +10,8 @@
 
 #include "shared/utc_text.h"
 #include "workstation/correction/rules/rule.h"
+#include "workstation/correction/student/certificate.h"
 #include "workstation/correction/student/student_policy.h"
-#include "workstation/correction/student/verify.h"
 #include "workstation/data/env/context_fit.h"
 #include "workstation/report/figures/curves.h"
 #include "workstation/report/figures/heat_map.h"
