@@ -250,6 +250,7 @@ BESS_OPTION_TYPE(std::int64_t);
 BESS_OPTION_TYPE(std::optional<std::string>);
 BESS_OPTION_TYPE(std::optional<int>);
 BESS_OPTION_TYPE(std::optional<double>);
+BESS_OPTION_TYPE(std::optional<std::int64_t>);
 BESS_OPTION_TYPE(std::optional<std::uint64_t>);
 #undef BESS_OPTION_TYPE
 

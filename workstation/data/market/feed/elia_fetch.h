@@ -145,8 +145,8 @@ struct RetriedRequest {
 };
 
 /// Requests until `read` takes the body of an answer; false if interrupted. `read` throws
-/// NotMarketData for an answer that is final, or UserError for an unreadable one, which is requested
-/// again, since a proxy may have changed it. Throws UserError after the last attempt.
+/// NotMarketData for an answer that is final, or UserError for an unreadable one, which is
+/// requested again, since a proxy may have changed it. Throws UserError after the last attempt.
 bool get_with_retries(const RetriedRequest& request, const RetryPolicy& retry, const Sleep& sleep,
                       const std::atomic<bool>& interrupted,
                       const std::function<void(std::string body)>& read);
