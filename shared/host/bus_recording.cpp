@@ -83,6 +83,7 @@ std::string_view parse_exchange(JsonValue object, BusExchange& exchange) {
   if (!take_whole(object, "count", 1, BusExchange::kRegistersMax, exchange.count)) {
     return "\"count\" must be 1 to 125";
   }
+  if (exchange.address + exchange.count > 65'536) return "\"address\" + \"count\" exceed 65536";
   if (!take_whole(object, "latency_us", 0, 3'600'000'000LL, exchange.latency_us)) {
     return "\"latency_us\" must be 0 to 3600000000";
   }

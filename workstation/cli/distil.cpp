@@ -74,6 +74,7 @@ void run_distil(const DistilArguments& options) {
                     {"--day-ahead", options.day_ahead.path},
                     {"--config", options.common.config_path}});
   require_writable(options.out);
+  if (!options.curve_out.empty()) require_writable(options.curve_out);
   Teacher teacher = load_teacher(options.teacher);
   teacher.learnt_for = learnt_for_of(options.teacher);
   warn_learnt_otherwise(options.teacher, circumstances_of(config_entries(config)));

@@ -102,6 +102,7 @@ void run_train(const TrainArguments& options) {
                     {"--day-ahead", options.day_ahead.path},
                     {"--config", options.common.config_path}});
   require_writable(options.out);
+  if (!options.curve_out.empty()) require_writable(options.curve_out);
   const FolderLock folder_lock(fs::path(options.out).parent_path(),
                                FolderLock::LockScope::kOneFile);
   const FileLock lock(options.out);

@@ -87,7 +87,8 @@ Bytes BusReply::spoil(const BusRequest& request, Bytes reply, BatteryFault fault
     case BatteryFault::kGarbage:
       return random_bytes(random);
     case BatteryFault::kDuplicate:
-      reply.insert(reply.end(), reply.begin(), reply.end());
+      reply.resize(2 * reply.size());
+      std::copy_n(reply.begin(), reply.size() / 2, reply.begin() + reply.size() / 2);
       return reply;
     case BatteryFault::kWrongTransaction:
       reply[1] ^= 1;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <string.h>
+
 #include <algorithm>
 #include <map>
 
@@ -31,7 +33,8 @@ std::string version_in(const fs::path& folder, const std::string& architecture) 
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     if (!name.starts_with(begin) || !name.ends_with(end)) continue;
-    newest = std::max(newest, name.substr(begin.size(), name.size() - begin.size() - end.size()));
+    std::string version = name.substr(begin.size(), name.size() - begin.size() - end.size());
+    if (strverscmp(version.c_str(), newest.c_str()) > 0) newest = std::move(version);
   }
   return newest;
 }

@@ -115,6 +115,7 @@ TEST_F(BusRecording, DamageIsOneLineWithItsNumber) {
       {changed("\"function\":3", "\"function\":5"), "\"function\""},
       {changed("258", "-1"), "\"address\" 65535"},
       {changed("\"count\":2", "\"count\":126"), "\"count\" 125"},
+      {changed("\"address\":258", "\"address\":65535"), "\"address\" \"count\" 65536"},
       {changed("\"count\":2", "\"count\":3"), "\"values\""},
       {changed("65535", "65536"), "\"values\""},
       {changed("8120", "-8"), "\"latency_us\""},

@@ -68,6 +68,9 @@ TEST_F(ClassPackages, OneAClassAndAgainOnlyWhereItsStudentIsAnother) {
   write_file(folder_.path / "22/student_weights.h", "retrained");
   EXPECT_TRUE(package_class(folder_, request_, classes[0]));
   EXPECT_EQ(classes[0].version, "0.1.0+2026.g1.22") << "no file of the previous student is left";
+  write_file(request_.out / "22/bess-edge_0.1.0+2026.g10.22_arm64.deb", "newer");
+  EXPECT_FALSE(package_class(folder_, request_, classes[0]));
+  EXPECT_EQ(classes[0].version, "0.1.0+2026.g10.22");
 }
 
 TEST_F(ClassPackages, TheInventoryHasEachSiteInItsClassAndInOneShare) {
