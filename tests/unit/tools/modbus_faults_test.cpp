@@ -171,6 +171,9 @@ void order_in_trouble(const Trouble& trouble, const char* variant) {
   LoopbackBattery loopback(load_shipped_map({"alphaess", variant}), troubled(trouble, 0.15),
                            trouble.transport, kLarge, kScale);
   ModbusBattery battery(loopback.link(kResponseTimeoutMs), loopback.map, loopback.clock);
+  // Of an order whose start alone had no effect, after a start at 0 W, every register reads as
+  // written: only its power shows that (ResponseMonitor).
+  const bool starts_late = trouble.fault == BatteryFault::kAckWithoutEffect;
   std::set<std::int32_t> in_force = {0};
   PowerOrder order{.soc_min_e4 = 1'000, .duration_s = 86'400};
   Status ordered = Status::kNotConnected;
@@ -180,6 +183,7 @@ void order_in_trouble(const Trouble& trouble, const char* variant) {
     ordered = battery.order(order);
     if (ordered == Status::kOk) {
       in_force = {order.power_w};
+      if (starts_late) in_force.insert(0);
     } else {
       in_force.insert({0, order.power_w});  // neither, accepted, or withdrawn
     }
@@ -191,7 +195,7 @@ void order_in_trouble(const Trouble& trouble, const char* variant) {
   ASSERT_EQ(ordered, Status::kOk);  // it always recovers
   const SimulatedBattery& truth = loopback.stop();
   EXPECT_TRUE(truth.dispatch_active());
-  EXPECT_EQ(truth.power_w(), order.power_w);
+  EXPECT_TRUE(truth.power_w() == order.power_w || (starts_late && truth.power_w() == 0));
 }
 
 TEST_P(EveryFault, WhatReadSaysIsTrueAndWhatOrderSaysIsInForce) {
