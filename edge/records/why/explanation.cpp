@@ -29,14 +29,9 @@ void find_beginning(const LogReader& log, std::uint64_t number, Explanation& exp
 void find_evidence(const LogReader& log, Explanation& explanation) {
   constexpr std::uint64_t kCycles = 4;
   const std::uint64_t last = number_at(log, explanation.record.trip.utc_s);
-  CycleRecord before;
   CycleRecord record;
   for (std::uint64_t n = last > kCycles ? last - kCycles + 1 : 1; n <= last; ++n) {
-    if (!log.read(n, record) || !record.has_measurement) continue;
-    const bool has_order = n > 1 && log.read(n - 1, before);
-    explanation.evidence.push_back({.utc_s = record.utc_s,
-                                    .ordered_power_w = has_order ? before.ordered_power_w : 0,
-                                    .measurement = record.measurement});
+    if (log.read(n, record) && record.has_measurement) explanation.evidence.push_back(record);
   }
 }
 

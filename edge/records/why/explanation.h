@@ -36,13 +36,6 @@ inline bool parse_duration(std::string_view text, std::int64_t& seconds) {
   return seconds > 0;
 }
 
-/// What the battery was to do and what it did, in one control cycle before a trip.
-struct TripEvidence {
-  std::int64_t utc_s = 0;
-  std::int32_t ordered_power_w = 0;  ///< order in force at the reading
-  BatteryMeasurement measurement{};
-};
-
 struct Explanation {
   CycleRecord record{};
   std::int64_t since_utc_s = 0;  ///< first tick of the uninterrupted reason
@@ -52,7 +45,7 @@ struct Explanation {
   Margins margins{};
   /// The student of this program decides differently: another version wrote the log.
   bool is_other_student = false;
-  std::vector<TripEvidence> evidence{};  ///< control cycles up to the trip; empty without a trip
+  std::vector<CycleRecord> evidence{};  ///< readings up to that of the trip; empty without a trip
 };
 
 /// Explains record `number` of the log; false if it is no longer readable.

@@ -136,18 +136,18 @@ void add_limits(const CycleRecord& record, const ControlSettings& settings, std:
 
 void add_evidence(const Explanation& explanation, std::string& text) {
   const char* head = "evidence";
-  for (const TripEvidence& cycle : explanation.evidence) {
+  for (const CycleRecord& cycle : explanation.evidence) {
     add_formatted(text, "%-10s %s: ordered %d W, measured %d W, SoC %.2f %%\n", head,
-                  local_text(cycle.utc_s).c_str(), cycle.ordered_power_w, cycle.measurement.power_w,
-                  percent(cycle.measurement.soc_e4));
+                  local_text(cycle.utc_s).c_str(), cycle.followed.power_w,
+                  cycle.measurement.power_w, percent(cycle.measurement.soc_e4));
     head = "";
   }
 }
 
 Json evidence_json(const Explanation& explanation) {
-  return Json::list_from(explanation.evidence, [](const TripEvidence& cycle) {
+  return Json::list_from(explanation.evidence, [](const CycleRecord& cycle) {
     return Json::object({{"utc", utc_text(cycle.utc_s).view()},
-                         {"ordered_power_w", cycle.ordered_power_w},
+                         {"ordered_power_w", cycle.followed.power_w},
                          {"measured_power_w", cycle.measurement.power_w},
                          {"soc_percent", Decimals{percent(cycle.measurement.soc_e4), 2}}});
   });

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <vector>
+
 #include "edge/core/control/policy.h"
 #include "shared/local_time.h"
 #include "tests/support/temporary_folder.h"
@@ -10,6 +12,8 @@
 
 namespace bess {
 namespace {
+
+using ::testing::ElementsAre;
 
 constexpr std::int64_t kTick = 1'763'901'120;  // 2025-11-23T12:32:00Z, 13:32 in Brussels
 
@@ -130,6 +134,31 @@ TEST_F(Why, ATripHoldsUntilItIsCleared) {
   log(r);
   const std::string text = explanation_text(explained(), settings_);
   EXPECT_THAT(text, Names("safe soc_mismatch 2025-11-23 13:22"));
+}
+
+TEST_F(Why, ATripShowsWhatWasJudged) {
+  for (std::int64_t cycle = 0; cycle < 8; ++cycle) {
+    CycleRecord r = decided(cycle, 1'000);
+    // The order of the record comes after its reading, which followed the order before, or a cut.
+    r.followed = {.is_judged = true, .power_w = 4'000 - static_cast<std::int32_t>(cycle)};
+    r.measurement.power_w = -100 - static_cast<std::int32_t>(cycle);
+    r.has_measurement = cycle != 4;
+    r.is_tripped = cycle >= 5;
+    if (r.is_tripped) r.trip = {.reason = Reason::kWrongDirection, .utc_s = kTick + 5 * 120};
+    log(r);
+  }
+  const Explanation explanation = explained();
+  const Json json = Json::parse(explanation_json(explanation, settings_).text());
+  std::vector<double> ordered_w, measured_w;
+  for (const JsonValue cycle : json.value()["evidence"]) {
+    ordered_w.push_back(cycle["ordered_power_w"].number().value());
+    measured_w.push_back(cycle["measured_power_w"].number().value());
+  }
+  EXPECT_THAT(ordered_w, ElementsAre(3'998, 3'997, 3'995))
+      << "to the trip; one cycle has no reading";
+  EXPECT_THAT(measured_w, ElementsAre(-102, -103, -105));
+  EXPECT_THAT(explanation_text(explanation, settings_), Names("3998 -102 3997 -103 3995 -105"));
+  EXPECT_THAT(explained(4).evidence, ::testing::IsEmpty()) << "before the trip";
 }
 
 TEST_F(Why, WithoutAPriceNothingIsInvented) {
