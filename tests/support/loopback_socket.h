@@ -8,6 +8,8 @@
 
 #include <chrono>
 #include <cstdint>
+#include <stdexcept>
+#include <string>
 #include <thread>
 
 namespace bess {
@@ -41,7 +43,8 @@ inline std::uint16_t free_port() {
   return ntohs(address.sin_port);
 }
 
-/// Returns when a program listens on the port, which takes seconds on a busy machine.
+/// Returns when a program listens on the port, which takes seconds on a busy machine; throws after
+/// ten.
 inline void await_listener(std::uint16_t port) {
   const sockaddr_in address = loopback_address(port);
   for (int tries = 0; tries < 500; ++tries) {
@@ -52,6 +55,7 @@ inline void await_listener(std::uint16_t port) {
     if (is_open) return;
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
+  throw std::runtime_error("nothing listens on port " + std::to_string(port));
 }
 
 }  // namespace bess

@@ -65,7 +65,7 @@ TEST_F(MqttTrouble, AGoodCertificateIsAcceptedAndEachBadOneReportedByItsCause) {
 }
 
 TEST_F(MqttTrouble, ServersThatAreNoBrokers) {
-  const std::string nobody = send(free_port(), "");
+  const std::string refused = send(free_port(), "");
   const DatedCertificate good("IP:127.0.0.1", -kDayS, kDayS);
   Broker plain(folder_, free_port());
   EXPECT_THAT(send(plain.port(), good.ca()), Names("TLS"));
@@ -77,7 +77,7 @@ TEST_F(MqttTrouble, ServersThatAreNoBrokers) {
   });
   const std::string mute = send(silent.port(), "");
   EXPECT_THAT(mute, Names("MQTT"));
-  EXPECT_TRUE(!nobody.empty() && nobody != mute) << nobody;
+  EXPECT_TRUE(!refused.empty() && refused != mute) << refused;
 }
 
 }  // namespace

@@ -219,7 +219,7 @@ TEST_F(RunPlanning, PricesThatMovedAreTheSamePrices) {
 
 TEST_F(RunPlanning, FilesOfARunWithoutItsRecordAreNotOverwritten) {
   fs::remove(fs::path(request_.out) / "run.json");
-  write_file(fs::path(request_.out) / "teacher.bin", "somebody's");
+  write_file(fs::path(request_.out) / "teacher.bin", "of another run");
   for (const bool resume : {false, true}) {
     request_.resume = resume;
     EXPECT_THAT(refusal(request_), Names("teacher.bin run.json --out"));
