@@ -12,7 +12,7 @@
 namespace bess {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kClearFooter =
     R"(A trip (wrong_direction, uncontrolled_power, soc_mismatch, state_lost) leaves the battery in
 its own mode, also over restarts, until this command. A running controller continues at its next
 control cycle.
@@ -80,7 +80,7 @@ void add_clear(EdgeCommand root) {
   EdgeCommand command = root.subcommand("clear", "clear a trip after its cause is found");
   const auto yes = std::make_shared<bool>(false);
   command.flag("--yes", *yes, "clear the trip; default: only show it");
-  command.footer(kFooter);
+  command.footer(kClearFooter);
   command.set_action([yes](SettingsFile& settings) { return run_clear(*yes, settings); });
 }
 

@@ -22,7 +22,7 @@ struct CommissionOptions {
   std::string record_path;
 };
 
-constexpr const char* kFooter =
+constexpr const char* kCommissionFooter =
     R"(Orders 0 W for 10 s, then charges and discharges 500 W for 30 s each; [commissioning] of the
 map can set other values. In each direction the measured power must follow the set point within
 [response] of the map, and so must the meter of [meter]. Then, if SoC, limits and connection allow,
@@ -282,7 +282,7 @@ void add_commission(EdgeCommand root) {
               "record Modbus exchanges to FILE, for map check --steps")
       .value_name("FILE");
   command.flag("--yes", options->yes, "send the orders; default: only list them");
-  command.footer(kFooter);
+  command.footer(kCommissionFooter);
   command.set_action(
       [options](SettingsFile& settings) { return run_commission(*options, settings); });
 }

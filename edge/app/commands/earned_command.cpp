@@ -15,7 +15,7 @@ struct EarnedOptions {
   bool json = false;
 };
 
-constexpr const char* kFooter =
+constexpr const char* kEarnedFooter =
     R"(Earnings are the energy of each quarter-hour at its settled price, if bess-prices has fetched
 it ([settled]), else at its last indicative price, an estimate. Fees, taxes and wear are not
 subtracted. Also printed: the change in stored energy, and the control cycles that the student did
@@ -87,7 +87,7 @@ void add_earned(EdgeCommand root) {
       .check(complaint);
   command.flag("--csv", options->csv, "CSV with a header, one line per day");
   command.flag("--json", options->json, "one JSON object: days and their sum").excludes("--csv");
-  command.footer(kFooter);
+  command.footer(kEarnedFooter);
   command.set_action([options](SettingsFile& settings) { return run_earned(*options, settings); });
 }
 

@@ -27,7 +27,7 @@ struct HoldOptions {
   std::int64_t for_s = 0;  ///< 0 = not given
 };
 
-constexpr const char* kFooter =
+constexpr const char* kHoldFooter =
     R"(The controller follows the hold from its next control cycle until the end time, also over
 restarts, and then trades again. A hold replaces student and price thresholds and needs no price.
 All other rules override it: stop reasons, SoC bounds, reserve, full cycles, reversals, power and
@@ -193,7 +193,7 @@ void add_hold(EdgeCommand root) {
   command.flag("--release", options->release, "end the hold now")
       .excludes("--for")
       .excludes("watts");
-  command.footer(kFooter);
+  command.footer(kHoldFooter);
   command.set_action(
       [options](SettingsFile& settings) { return run_hold(*options, settings); },
       [options] {

@@ -21,7 +21,7 @@ struct LimitOptions {
   std::int64_t for_s = 0;  ///< 0 = not given
 };
 
-constexpr const char* kFooter =
+constexpr const char* kLimitFooter =
     R"(Replaces the file of [limits] by one line, "charge_w discharge_w utc_until". Other programs
 can write it too: write a new file, then rename it. The controller reads it every few seconds and
 reduces a larger order immediately. After its end time, or --clear, the limit no longer applies;
@@ -92,7 +92,7 @@ void add_limit(EdgeCommand root) {
       .value_name("W");
   command.duration("--for", options->for_s, 1, "duration, up to 7d, such as 90s or 1h30m");
   command.flag("--clear", options->clear, "remove the limit").excludes("--for");
-  command.footer(kFooter);
+  command.footer(kLimitFooter);
   command.set_action(
       [options](SettingsFile& settings) { return run_limit(*options, settings); },
       [options] {

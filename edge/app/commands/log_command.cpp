@@ -24,7 +24,7 @@ struct LogOptions {
   std::string at;
 };
 
-constexpr const char* kFooter =
+constexpr const char* kLogFooter =
     R"(MOMENT is local time: 14:32 (the latest), yesterday, "yesterday 14:32" or "2026-11-23 14:32";
 an age: 2h; or UTC: 2026-11-23T13:32:00Z. Energy and money are estimates: the power measured at the
 start of the control cycle, for two minutes, at the price of the decision; bess-edge earned uses
@@ -155,7 +155,7 @@ void add_log(EdgeCommand root) {
       .excludes("--last")
       .excludes("--since")
       .excludes("--until");
-  command.footer(kFooter);
+  command.footer(kLogFooter);
   command.set_action([options](SettingsFile& settings) { return run_log(*options, settings); });
 }
 

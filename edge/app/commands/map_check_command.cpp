@@ -24,7 +24,7 @@ struct MapCheckOptions {
   bool json = false;
 };
 
-constexpr const char* kFooter =
+constexpr const char* kMapCheckFooter =
     R"(Lists each point with implausible values and a proposed correction: no answer, out of range,
 wrong scale, word order or type; a state of charge that does not change or does not follow the
 measured power; power against the order. The last three need a recording in which energy flowed.
@@ -190,7 +190,7 @@ void add_map_check(EdgeCommand root) {
       .flag("--steps", options->steps,
             "print the fitted step response as [battery] in TOML for bess-train and bess-sim")
       .excludes("--json");
-  command.footer(kFooter);
+  command.footer(kMapCheckFooter);
   command.does_without_settings(
       [options](SettingsFile& settings) { return run_map_check(*options, settings); });
 }

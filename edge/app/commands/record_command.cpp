@@ -23,7 +23,7 @@ struct RecordOptions {
   std::int64_t every_s = 0;  ///< 0 = not given
 };
 
-constexpr const char* kFooter =
+constexpr const char* kRecordFooter =
     R"(One JSON object per line: request, values or error, latency. The file can be shared:
 registers that the map does not name or marks as private are 0, texts that the identity check does
 not need are X; it has no network addresses and no prices. Refused while another bess-edge uses the
@@ -160,7 +160,7 @@ void add_record(EdgeCommand root) {
       .option("--out", options->out_path,
               "output file; default: bess-TIME.jsonl in the current folder")
       .value_name("FILE");
-  command.footer(kFooter);
+  command.footer(kRecordFooter);
   command.set_action([options](SettingsFile& settings) { return run_record(*options, settings); });
 }
 

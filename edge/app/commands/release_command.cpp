@@ -14,7 +14,7 @@ struct ReleaseOptions {
   bool force = false;
 };
 
-constexpr const char* kFooter =
+constexpr const char* kReleaseFooter =
     R"(Ends an order that a stopped controller left in force. Needs no sign check. Refused while a
 bess-edge controls the battery: stop that controller instead.
 Exit codes:
@@ -56,7 +56,7 @@ void add_release(EdgeCommand root) {
   command.flag("--yes", options->yes, "required: release the battery now");
   command.flag("--force", options->force,
                "release even if the device does not match its register map");
-  command.footer(kFooter);
+  command.footer(kReleaseFooter);
   command.set_action([options](SettingsFile& settings) { return run_release(*options, settings); });
 }
 

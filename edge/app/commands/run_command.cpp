@@ -20,7 +20,7 @@ struct RunCommandOptions {
   std::string record_path;   ///< empty = no recording
 };
 
-constexpr const char* kFooter =
+constexpr const char* kRunFooter =
     R"(Writes to the battery only with control = true and after bess-edge commission has passed.
 Each battery has one controller: a second one is refused, also read-only or with --check, because
 many batteries serve only one connection. SIGTERM or Ctrl-C: order 0 W, release the battery, exit 0.
@@ -79,7 +79,7 @@ void add_run(EdgeCommand root) {
   root.option("--record", options->record_path,
               "record all Modbus traffic to FILE; replay with bess-sim battery --replay FILE")
       .value_name("FILE");
-  root.footer(kFooter);
+  root.footer(kRunFooter);
   root.set_action([options](SettingsFile& settings) { return run(*options, settings); });
 }
 

@@ -6,7 +6,7 @@
 namespace bess {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kSignatureFooter =
     R"(Student and guard replay recorded prices in integers: two days of each month of a year, with
 the clock changes. The signature covers every order. Two builds with the same student and different
 signatures decide differently. Expected line: edge/generated/decision_signature.txt.
@@ -18,7 +18,7 @@ Exit codes:
 
 void add_signature(EdgeCommand root) {
   EdgeCommand command = root.subcommand("signature", "checksum of all decisions of this build");
-  command.footer(kFooter);
+  command.footer(kSignatureFooter);
   command.does_without_settings([](SettingsFile&) {
     std::puts(decision_signature_line().c_str());
     return 0;

@@ -34,7 +34,7 @@ struct StatusOptions {
   bool no_lock = false;
 };
 
-constexpr const char* kFooter =
+constexpr const char* kStatusFooter =
     R"(Reads files only; does not disturb battery or controller. While the controller runs, also
 prints the next decision at constant price and SoC, planned reserves and full charges, and settings
 without effect. Health is ok, degraded (with reasons) or not running. A status older than two
@@ -424,7 +424,7 @@ void add_status(EdgeCommand root) {
       .excludes("--json");
   command.flag("--follow", options->follow, "repeat every two seconds until Ctrl-C");
   command.flag("--no-lock", options->no_lock, "check the process id instead of the lock");
-  command.footer(kFooter);
+  command.footer(kStatusFooter);
   command.set_action([options](SettingsFile& settings) { return run_status(*options, settings); });
 }
 

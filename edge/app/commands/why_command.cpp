@@ -14,7 +14,7 @@ struct WhyOptions {
   bool json = false;
 };
 
-constexpr const char* kFooter =
+constexpr const char* kWhyFooter =
     R"(Prints the decider of one control cycle, since when and until when, and the decision margins:
 the highest price and state of charge at which it would have charged, and the lowest at which it
 would have discharged. The student is proved monotone in both, so there are no other changes.
@@ -73,7 +73,7 @@ void add_why(EdgeCommand root) {
                  "control cycle in force at MOMENT, local time: 14:32 (the latest), \"2026-11-23 "
                  "14:32\", or UTC: 2026-11-23T13:32:00Z; default: the newest");
   command.flag("--json", options->json, "one JSON object with the same values");
-  command.footer(kFooter);
+  command.footer(kWhyFooter);
   command.set_action([options](SettingsFile& settings) { return run_why(*options, settings); });
 }
 

@@ -101,7 +101,7 @@ int OutlookPlanner::plan(const PlanRequest& request, const OutlookDays& days) {
 
 namespace {
 
-void say(JournalLevel level, const std::string& text) {
+void report_outlook(JournalLevel level, const std::string& text) {
   write_journal_line(level, "bess-prices: outlook: " + text);
 }
 
@@ -120,7 +120,8 @@ void OutlookFetcher::start(std::int32_t start_centi) {
   const std::int64_t now = now_utc_s();
   const int kept = restore_day_ahead(kept_path_.c_str(), fetch_state_.store);
   fetch(now);
-  say(JournalLevel::kNotice,
+  report_outlook(
+      JournalLevel::kNotice,
       std::to_string(kept) + " stored day-ahead prices; request for more: " + fetch_state_.reason);
   const Decision decision = next_decision();
   planner_.plan_usual_day(now, decision.level_centi);
@@ -188,7 +189,8 @@ void OutlookFetcher::fetch_until_stopped() {
     const Status before = fetch_state_.status;
     fetch(now);
     if (fetch_state_.status != before) {
-      say(fetch_state_.status == Status::kOk ? JournalLevel::kNotice : JournalLevel::kWarning,
+      report_outlook(
+          fetch_state_.status == Status::kOk ? JournalLevel::kNotice : JournalLevel::kWarning,
           "day-ahead prices: " + fetch_state_.reason);
     }
   }
@@ -205,7 +207,7 @@ void OutlookFetcher::fetch(std::int64_t now_utc_s) {
   }
   if (is_kept_) return;
   is_kept_ = keep_day_ahead(kept_path_.c_str(), fetch_state_.store);
-  if (!is_kept_) say(JournalLevel::kWarning, kept_path_ + " cannot be written");
+  if (!is_kept_) report_outlook(JournalLevel::kWarning, kept_path_ + " cannot be written");
 }
 
 void OutlookFetcher::wait(std::int64_t simulated_ns) const {

@@ -25,7 +25,7 @@ namespace {
 
 constexpr std::size_t kAnswerBytesMax = 16 * 1024 * 1024;  // 100 days, with every field: 3 MB
 
-void say(JournalLevel level, const std::string& text) {
+void report_settled(JournalLevel level, const std::string& text) {
   write_journal_line(level, "bess-prices: settled prices: " + text);
 }
 
@@ -138,7 +138,7 @@ SettledResult fetch_settled(const SettledSource& source, std::int64_t now_utc_s,
   SettledResult result;
   SettledPrices prices;
   const std::string loss = prices.read(source.file);
-  if (!loss.empty()) say(JournalLevel::kWarning, loss);
+  if (!loss.empty()) report_settled(JournalLevel::kWarning, loss);
   const std::int64_t until_utc_s = local_midnight_utc_s(now_utc_s);
   const std::int64_t oldest_utc_s = until_utc_s - source.days * kSecondsPerDay;
   const std::string url = settled_url(source, prices.first_open(oldest_utc_s), until_utc_s);
@@ -171,9 +171,9 @@ void fetch_settled_daily(const SettledSource& source, const ScaledClock& clock,
       const SettledResult result = fetch_settled(source, now_utc_s, stop);
       schedule.tried(now_utc_s, result.is_whole && result.trouble.empty(), result.wait_s);
       if (!result.trouble.empty() && result.trouble != trouble_before) {
-        say(JournalLevel::kWarning, result.trouble + "; retrying");
+        report_settled(JournalLevel::kWarning, result.trouble + "; retrying");
       } else if (result.trouble.empty() && !trouble_before.empty()) {
-        say(JournalLevel::kNotice, "fetched successfully again");
+        report_settled(JournalLevel::kNotice, "fetched successfully again");
       }
       trouble_before = result.trouble;
     }

@@ -11,7 +11,7 @@
 namespace bess {
 namespace {
 
-std::string percent(std::int32_t soc_e4) { return formatted("%.1f", soc_e4 / 100.0); }
+std::string percent_text(std::int32_t soc_e4) { return formatted("%.1f", soc_e4 / 100.0); }
 std::string celsius(std::int32_t deci_c) { return formatted("%.1f", deci_c / 10.0); }
 template <typename Text>
 std::string string(const Text& text) {
@@ -48,11 +48,17 @@ const NamedValue kValues[] = {
     {"price_age_s_max", [](Cycle, Settings s) { return std::to_string(s.guard.price_age_s_max); }},
     {"stand_in_s_max", [](Cycle, Settings s) { return std::to_string(s.guard.stand_in_s_max); }},
     {"soc_below_full",
-     [](Cycle, Settings s) { return percent(s.guard.soc_max_e4 - s.guard.soc_hysteresis_e4); }},
+     [](Cycle, Settings s) {
+       return percent_text(s.guard.soc_max_e4 - s.guard.soc_hysteresis_e4);
+     }},
     {"soc_above_empty",
-     [](Cycle, Settings s) { return percent(s.guard.soc_min_e4 + s.guard.soc_hysteresis_e4); }},
+     [](Cycle, Settings s) {
+       return percent_text(s.guard.soc_min_e4 + s.guard.soc_hysteresis_e4);
+     }},
     {"soc_above_reserve",
-     [](Cycle c, Settings s) { return percent(c.reserve_soc_e4 + s.guard.soc_hysteresis_e4); }},
+     [](Cycle c, Settings s) {
+       return percent_text(c.reserve_soc_e4 + s.guard.soc_hysteresis_e4);
+     }},
     {"reversals_per_hour_max",
      [](Cycle, Settings s) { return std::to_string(s.reversals_per_hour_max); }},
     {"meter_pause_end",

@@ -6,7 +6,7 @@
 
 namespace bess {
 namespace {
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 /// Minimum gain, relative to the sums, for a staircase to split a level set (rounding noise).
 constexpr double kRelativeGain = 1e-13;
 }  // namespace
@@ -35,7 +35,7 @@ double IsotonicProjection::best_staircase(const Block& block, Rows rows, double 
   for (int i = rows.first; i < rows.last; ++i) {
     double* best = &best_[i * stride];
     int* argbest = &argbest_[i * stride];
-    double before = i == rows.first ? 0.0 : -kInfinity;  // best of row i-1 over thresholds >= t
+    double before = i == rows.first ? 0.0 : -kNoLimit;  // best of row i-1 over thresholds >= t
     int before_at = columns_;
     double gain = 0;
     for (int j = block.begin[i]; j < block.end[i]; ++j) gain += y_[i * columns_ + j] - theta;
@@ -47,7 +47,7 @@ double IsotonicProjection::best_staircase(const Block& block, Rows rows, double 
       }
       const bool allowed = (i >= forced_in_rows || t >= block.end[i]) &&
                            (i < rows_ - forced_out_rows || t <= block.begin[i]);
-      best[t] = allowed ? before + gain : -kInfinity;
+      best[t] = allowed ? before + gain : -kNoLimit;
       argbest[t] = before_at;
     }
   }
@@ -128,7 +128,8 @@ void IsotonicProjection::project(std::span<const double> y, const RowBounds& bou
   x_ = x;
   clipped_.clear();
   std::vector<int> cut;
-  Block rest{std::vector<int>(rows_, 0), std::vector<int>(rows_, columns_), -kInfinity, kInfinity};
+  Block rest{std::vector<int>(rows_, 0), std::vector<int>(rows_, columns_), -kNoLimit,
+             kNoLimit};
   // Solves the part above the bound and keeps the rest.
   const auto split_off = [&](double bound, int forced_in_rows) {
     const Rows rows = rows_of(rest);

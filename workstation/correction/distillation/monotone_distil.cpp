@@ -172,7 +172,11 @@ ActionSet RuleSamples::actions_at(const float* x, const PriceMap& price_map) con
 
 namespace {
 
-enum Seed : std::uint64_t { kSeedStudent = 21, kSeedBatches = 22, kSeedLessons = 23 };
+enum MonotoneSeed : std::uint64_t {
+  kSeedMonotoneStudent = 21,
+  kSeedBatches = 22,
+  kSeedLessons = 23
+};
 
 constexpr float kLeak = 0.05F;  ///< gradient factor of saturated units, so that they can recover
 constexpr double kRandomShare = 0.25;  ///< states from the whole lattice per visited one
@@ -266,7 +270,7 @@ MonotoneDistiller::MonotoneDistiller(const Teacher& teacher, const TrainingBatch
       rules_(with_built_in(options.correction.thresholds, options.rules), teacher.context.kind),
       bounds_(options.correct ? SignBounds::monotone(options.rules.directions())
                               : SignBounds::none()),
-      student_(initial_parameters(kStudentShape, derive_seed(options.seed, kSeedStudent))),
+      student_(initial_parameters(kStudentShape, derive_seed(options.seed, kSeedMonotoneStudent))),
       average_(student_),
       adam_(kStudentShape.parameter_count()),
       team_(options.threads),
