@@ -77,10 +77,10 @@ std::string gain_row(const HeadlineGain& gain, double reach) {
   for (std::size_t w = 0; w < kHeadlineWears.size(); ++w) {
     const PairedDifference& d = gain.difference[w];
     row += fmt::format(
-        "<td data-label=\"Wear {:g}, EUR/day/MWh\"><span "
+        "<td data-label=\"{}, EUR/day/MWh\"><span "
         "class=\"number\">{}{}</span><small>{}</small>{}</td>",
-        kHeadlineWears[w], signed_text(d.mean), plain_error(d.errors), month_error(d.errors),
-        bound ? "" : bar(d, reach));
+        w == 0 ? "No wear" : fmt::format("Wear {:g}", kHeadlineWears[w]), signed_text(d.mean),
+        plain_error(d.errors), month_error(d.errors), bound ? "" : bar(d, reach));
   }
   return row + "</tr>\n";
 }

@@ -87,7 +87,8 @@ namespace {
 std::string comparison_table(const std::string& caption, std::vector<ComparisonRow> rows) {
   std::erase_if(rows, [](const ComparisonRow& row) { return is_under_rules(row.name); });
   if (rows.empty()) return {};
-  return format_table(fmt::format("{}, {} days", caption, rows.front().days), figures_table(rows));
+  return format_table(fmt::format("{}, {} days, EUR/day/MWh", caption, rows.front().days),
+                      figures_table(rows));
 }
 
 std::vector<std::string> proof_cells(const std::string& name, const Certificate& c) {
@@ -143,7 +144,8 @@ std::string comparison_html(const std::vector<NamedEvaluation>& evaluations) {
   const auto carried = comparison_rows(evaluations, &NamedEvaluation::carried_over);
   if (reset.empty() && carried.empty()) return {};
   return fmt::format(
-      "{}{}<p class=\"note\">EUR/day/MWh: EUR per day per MWh of capacity. Gain: mean day-by-day "
+      "{}{}<p class=\"note\">Profit, gain and their errors in EUR per day per MWh of capacity. "
+      "Gain: mean day-by-day "
       "difference to {}; s.e.: standard error of the mean to its left; by month: {}. A gain within "
       "{} is not significant. Cycles: full cycles (throughput over twice the capacity); switches: "
       "changes of "

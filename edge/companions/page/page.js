@@ -169,15 +169,16 @@ const kColumns = [  // head, key, decimals
   ["control cycles driven", "driven_cycles", 0]];
 
 function showMonth(month) {
-  const stops = month.stops.by_reason.map((stop) =>
-    ` ${stop.meaning} (${stop.reason}): ${say(stop.cycles)} control cycles, ` +
-    `${say(stop.not_driven)} not driven.`);
   byId("money").textContent =
     `${eur(month.earned_eur)} earned, of which ${eur(month.estimated_eur)} estimated: ` +
     `${say(month.settled_quarter_hours)} of ${say(month.quarter_hours)} quarter-hours are at ` +
     "their settled price. At equal state of charge: " +
     `${eur(month.earned_at_equal_soc_eur)}. ` +
-    `In control ${percent(100 * month.stops.driven_share)} of the time.${stops.join("")}`;
+    `In control ${percent(100 * month.stops.driven_share)} of the time.` +
+    (month.stops.by_reason.length > 0 ? " Control cycles by other reasons than the student:" : "");
+  lines("stops", month.stops.by_reason.map(
+    (stop) => `${stop.meaning.replaceAll("`", "")} (${stop.reason}): ${say(stop.cycles)}, ` +
+      `${say(stop.not_driven)} of them not driven`), "li");
   lines("columns", ["day", ...kColumns.map(([head]) => head)], "th");
   fill("days", month.days.map((day) => element("tr", "", element("th", day.date),
     ...kColumns.map(([head, key, decimals]) => {

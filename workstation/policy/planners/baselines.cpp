@@ -256,7 +256,7 @@ std::span<const Baseline> baselines() {
        kCompared, fit<StochasticProgramPolicy>},
       {"sdp-hour", "program by hour only", "", "", kFitted, program_by_hour},
       {kOutlookProgramName, "program on --day-ahead prices, planned daily",
-       "stochastic program by outlook", "line-3", kFitted | kNeedsDayAhead, fit<OutlookPolicy>},
+       "stochastic program by outlook", "line-5", kFitted | kNeedsDayAhead, fit<OutlookPolicy>},
       {kForesightName, "", "upper bound with all prices known", "muted", kInRuns, foresight},
   };
   return kRows;

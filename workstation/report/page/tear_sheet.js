@@ -4,6 +4,14 @@
 const kReferenceWear = 10;  // EUR/MWh
 const kBars = 14;
 
+/** "2023-01-26" in two lines, for narrow screens. */
+const kTwoLineDates = {
+  callback(value) {
+    const date = this.getLabelForValue(value);
+    return date.length === 10 ? [date.slice(0, 4), date.slice(5)] : date;
+  },
+};
+
 class TearSheet {
   /** `days`: of unpackDays. */
   constructor(data, days) {
@@ -59,7 +67,7 @@ class TearSheet {
           borderDash: policy.name === this.data.foresight ? [5, 4] : [],
         })),
       },
-      options: {scales: {x: axis(), y: axis({title: axisTitle(kSumUnit)})}},
+      options: {scales: {x: axis({ticks: kTwoLineDates}), y: axis({title: axisTitle(kSumUnit)})}},
     }));
   }
 
@@ -152,7 +160,8 @@ class TearSheet {
         datasets: series.map(([name, values]) => ({label: name, data: values,
                                                    backgroundColor: policyColour(name)})),
       },
-      options: {scales: {x: axis({title: {...axisTitle(x), display: x !== ""}}),
+      options: {scales: {x: axis({title: {...axisTitle(x), display: x !== ""},
+                                  ticks: kTwoLineDates}),
                          y: axis({title: axisTitle(y), ticks: {precision: 0}, ...more})}},
     }));
   }
