@@ -9,6 +9,7 @@
 #include <new>
 
 #include "shared/host/text.h"
+#include "shared/utc_text.h"
 
 namespace bess {
 namespace {
@@ -159,5 +160,44 @@ void Json::add(Json value) {
 
 std::string Json::line() const { return taken(cJSON_PrintUnformatted(item_.get())); }
 std::string Json::text() const { return taken(cJSON_Print(item_.get())) + "\n"; }
+
+namespace {
+
+constexpr double kFirstMilliseconds = 1e11;  // in seconds: year 5138
+constexpr double kLastMilliseconds = 1e14;
+
+/// cJSON keeps duplicate members and returns the first.
+JsonValue only_member(JsonValue object, std::string_view name) {
+  JsonValue found;
+  if (!object.is_object()) return found;
+  for (const JsonValue member : object) {
+    if (member.key() != name) continue;
+    if (found.exists()) return JsonValue();
+    found = member;
+  }
+  return found;
+}
+
+}  // namespace
+
+JsonValue value_at(JsonValue object, std::string_view path) {
+  while (object.exists() && !path.empty()) {
+    const std::size_t dot = path.find('.');
+    object = only_member(object, path.substr(0, dot));
+    path = dot == path.npos ? std::string_view{} : path.substr(dot + 1);
+  }
+  return object;
+}
+
+std::optional<std::int64_t> time_in(JsonValue value) {
+  std::int64_t utc_s = 0;
+  if (const char* const text = value.text()) {
+    return parse_utc(text, utc_s) ? std::optional(utc_s) : std::nullopt;
+  }
+  const std::optional<double> number = value.number();
+  if (!number || !(*number >= 0 && *number < kLastMilliseconds)) return {};
+  const auto whole = static_cast<std::int64_t>(*number);
+  return *number < kFirstMilliseconds ? whole : whole / 1'000;
+}
 
 }  // namespace bess

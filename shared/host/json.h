@@ -141,4 +141,12 @@ inline Json value_or_null(bool exists, Json value) {
 /// Python and JavaScript write them, count as null.
 Json parse_answer(std::string_view text);
 
+/// Value at "a.b.c" below an object; "": the object itself. Duplicate names are ambiguous and count
+/// as absent.
+JsonValue value_at(JsonValue object, std::string_view path);
+
+/// UTC seconds: text with an offset (2023-03-26T01:02:00+00:00), or a number of seconds or
+/// milliseconds since 1970.
+std::optional<std::int64_t> time_in(JsonValue value);
+
 }  // namespace bess

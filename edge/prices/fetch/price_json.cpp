@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shared/host/day_ahead_rows.h"
+#include "shared/host/json.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {
