@@ -2,6 +2,9 @@
 // foresight above all, and the fast sweep equal to the plain one.
 #include <gtest/gtest.h>
 
+#include <set>
+
+#include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "tests/support/carried_over.h"
 #include "tests/support/small_market.h"
@@ -24,6 +27,20 @@ TEST(GivenRule, TakesItsThresholdsFromTheName) {
   for (const char* bad :
        {"rbc:", "rbc:1", "rbc:1:", "rbc:a:b", "rbc:2:1", "rbc:1:2x", "rbc:1:nan"}) {
     EXPECT_THROW(make_baseline(bad, small_steps(), {}), UserError) << bad;
+  }
+}
+
+TEST(Baselines, ShownOnesHaveDistinctColoursOfTheStyleSheet) {
+  const std::string style = read_file(BESS_SOURCE_DIR "/workstation/report/page/report.css") +
+                            read_file(BESS_SOURCE_DIR "/shared/host/embed/document.css");
+  std::set<std::string> colours;
+  for (const Baseline& row : baselines()) {
+    if (row.meaning.empty()) continue;
+    EXPECT_TRUE(colours.insert(row.colour).second) << row.name << ": " << row.colour;
+    const std::string variable = "--" + row.colour + ":";
+    const std::size_t light = style.find(variable);
+    ASSERT_NE(light, style.npos) << row.name << ": " << variable;
+    EXPECT_NE(style.find(variable, light + 1), style.npos) << row.name << ": dark " << variable;
   }
 }
 
