@@ -69,6 +69,11 @@ std::string bar(const PairedDifference& difference, double reach) {
       percent(difference.mean));
 }
 
+/// Head of a column of kHeadlineWears.
+std::string wear_head(std::size_t w) {
+  return w == 0 ? "No wear" : fmt::format("Wear {:g}", kHeadlineWears[w]);
+}
+
 std::string gain_row(const HeadlineGain& gain, double reach) {
   const bool bound = gain.against == kForesightName;
   std::string row = fmt::format("<tr{}><th scope=\"row\">{}<small>{}</small></th>",
@@ -79,8 +84,8 @@ std::string gain_row(const HeadlineGain& gain, double reach) {
     row += fmt::format(
         "<td data-label=\"{}, EUR/day/MWh\"><span "
         "class=\"number\">{}{}</span><small>{}</small>{}</td>",
-        w == 0 ? "No wear" : fmt::format("Wear {:g}", kHeadlineWears[w]), signed_text(d.mean),
-        plain_error(d.errors), month_error(d.errors), bound ? "" : bar(d, reach));
+        wear_head(w), signed_text(d.mean), plain_error(d.errors), month_error(d.errors),
+        bound ? "" : bar(d, reach));
   }
   return row + "</tr>\n";
 }
@@ -237,9 +242,9 @@ std::string headline_html(const Headline& headline) {
   text += fmt::format(
       "<table class=\"gains\">\n<caption>Gain over each alternative: mean day-by-day difference, "
       "EUR/day/MWh (EUR per day per MWh of capacity) \u00b1 standard error (by month)</caption>\n"
-      "<thead><tr><th scope=\"col\">Against</th><th scope=\"col\">No wear, EUR/day/MWh</th><th "
-      "scope=\"col\">Wear {:g}, EUR/day/MWh</th></tr></thead>\n<tbody>\n",
-      kHeadlineWears[1]);
+      "<thead><tr><th scope=\"col\">Against</th><th scope=\"col\">{}, EUR/day/MWh</th><th "
+      "scope=\"col\">{}, EUR/day/MWh</th></tr></thead>\n<tbody>\n",
+      wear_head(0), wear_head(1));
   const double reach = bar_reach(headline);
   for (const HeadlineGain& gain : headline.gains) text += gain_row(gain, reach);
   return text + fmt::format(
