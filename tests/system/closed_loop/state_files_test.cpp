@@ -70,7 +70,11 @@ class StateFiles : public SiteTest {
     newest_utc_ = edge_log().back().at("utc");
     newest_local_ = local_text_of(newest_utc_);
     for (const char* folder : kFolders) {
-      fs::copy(site_.folder.file(folder), pristine(folder), fs::copy_options::recursive);
+      std::error_code error;  // bess-prices may just be leaving it
+      do {
+        fs::remove_all(pristine(folder));
+        fs::copy(site_.folder.file(folder), pristine(folder), fs::copy_options::recursive, error);
+      } while (error);
     }
   }
   void add_notifier() {
