@@ -128,8 +128,7 @@ void IsotonicProjection::project(std::span<const double> y, const RowBounds& bou
   x_ = x;
   clipped_.clear();
   std::vector<int> cut;
-  Block rest{std::vector<int>(rows_, 0), std::vector<int>(rows_, columns_), -kNoLimit,
-             kNoLimit};
+  Block rest{std::vector<int>(rows_, 0), std::vector<int>(rows_, columns_), -kNoLimit, kNoLimit};
   // Solves the part above the bound and keeps the rest.
   const auto split_off = [&](double bound, int forced_in_rows) {
     const Rows rows = rows_of(rest);
