@@ -8,10 +8,16 @@
 
 #include "edge/core/base/status.h"
 #include "edge/prices/record/price_settings.h"
+#include "edge/records/log/journal.h"
 #include "shared/host/http_client.h"
 #include "shared/scaled_clock.h"
 
 namespace bess {
+
+/// A line of bess-prices in the journal.
+inline void say(JournalLevel level, const std::string& text) {
+  write_journal_line(level, "bess-prices: " + text);
+}
 
 /// Waits for a wall time, or up to a tenth of a second beyond a stop request.
 inline void pause(std::int64_t wall_ns, const std::stop_token& stop) {

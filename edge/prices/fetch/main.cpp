@@ -13,11 +13,11 @@
 #include "edge/companions/common/stop_signals.h"
 #include "edge/core/control/level_start.h"
 #include "edge/core/control/policy.h"
+#include "edge/prices/fetch/fetch.h"
 #include "edge/prices/fetch/outlook_fetcher.h"
 #include "edge/prices/fetch/price_fetcher.h"
 #include "edge/prices/fetch/settled_fetch.h"
 #include "edge/prices/record/transport_security.h"
-#include "edge/records/log/journal.h"
 #include "edge/records/log/log_reader.h"
 #include "shared/host/command_line.h"
 #include "shared/local_time.h"
@@ -145,7 +145,7 @@ int publish(const EdgeConfig& config, const SettledSource& settled, const char* 
   }
   std::stop_source stop;
   const StopSignals stop_signals([&] { stop.request_stop(); });
-  write_journal_line(JournalLevel::kNotice, "bess-prices: started");
+  say(JournalLevel::kNotice, "started");
   PricePublisher publisher(path);
   std::jthread beside([&] { run_beside(config, publisher, stop.get_token()); });
   std::jthread settling;
@@ -157,7 +157,7 @@ int publish(const EdgeConfig& config, const SettledSource& settled, const char* 
   beside.join();
   if (settling.joinable()) settling.join();
   static_cast<void>(unlink(path.c_str()));  // it would become outdated
-  write_journal_line(JournalLevel::kNotice, "bess-prices: stopped");
+  say(JournalLevel::kNotice, "stopped");
   return 0;
 }
 

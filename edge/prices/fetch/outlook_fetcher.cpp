@@ -5,7 +5,6 @@
 #include "edge/core/control/level_start.h"
 #include "edge/prices/fetch/day_ahead_feed.h"
 #include "edge/prices/fetch/fetch.h"
-#include "edge/records/log/journal.h"
 #include "edge/records/log/log_reader.h"
 #include "shared/local_time.h"
 #include "shared/price_level.h"
@@ -99,14 +98,6 @@ int OutlookPlanner::plan(const PlanRequest& request, const OutlookDays& days) {
   return plans_made_ - made_before;
 }
 
-namespace {
-
-void report_outlook(JournalLevel level, const std::string& text) {
-  write_journal_line(level, "bess-prices: outlook: " + text);
-}
-
-}  // namespace
-
 OutlookFetcher::OutlookFetcher(const EdgeConfig& config, const OutlookModel& model,
                                PricePublisher& publisher, const std::stop_token& stop)
     : config_(config),
@@ -120,9 +111,9 @@ void OutlookFetcher::start(std::int32_t start_centi) {
   const std::int64_t now = now_utc_s();
   const int kept = restore_day_ahead(kept_path_.c_str(), fetch_state_.store);
   fetch(now);
-  report_outlook(
-      JournalLevel::kNotice,
-      std::to_string(kept) + " stored day-ahead prices; request for more: " + fetch_state_.reason);
+  say(JournalLevel::kNotice,
+      "outlook: " + std::to_string(kept) +
+          " stored day-ahead prices; request for more: " + fetch_state_.reason);
   const Decision decision = next_decision();
   planner_.plan_usual_day(now, decision.level_centi);
   plan(decision);
@@ -189,9 +180,8 @@ void OutlookFetcher::fetch_until_stopped() {
     const Status before = fetch_state_.status;
     fetch(now);
     if (fetch_state_.status != before) {
-      report_outlook(
-          fetch_state_.status == Status::kOk ? JournalLevel::kNotice : JournalLevel::kWarning,
-          "day-ahead prices: " + fetch_state_.reason);
+      say(fetch_state_.status == Status::kOk ? JournalLevel::kNotice : JournalLevel::kWarning,
+          "outlook: day-ahead prices: " + fetch_state_.reason);
     }
   }
 }
@@ -207,7 +197,7 @@ void OutlookFetcher::fetch(std::int64_t now_utc_s) {
   }
   if (is_kept_) return;
   is_kept_ = keep_day_ahead(kept_path_.c_str(), fetch_state_.store);
-  if (!is_kept_) report_outlook(JournalLevel::kWarning, kept_path_ + " cannot be written");
+  if (!is_kept_) say(JournalLevel::kWarning, "outlook: " + kept_path_ + " cannot be written");
 }
 
 void OutlookFetcher::wait(std::int64_t simulated_ns) const {

@@ -8,7 +8,6 @@
 
 #include "edge/core/control/policy.h"
 #include "edge/records/log/atomic_file.h"
-#include "edge/records/log/journal.h"
 #include "shared/scaled_clock.h"
 
 namespace bess {
@@ -30,11 +29,10 @@ void PricePublisher::write() {
   const std::size_t size = encode_published(prices_, outlook_.get(), file);
   const bool is_written = replace_file(path_.c_str(), {file.data(), size});
   if (is_written == is_failing_) {
-    write_journal_line(
-        is_written ? JournalLevel::kNotice : JournalLevel::kError,
-        "bess-prices: " + path_ +
-            (is_written ? " can be written again"
-                        : std::string(" cannot be written: ") + std::strerror(errno)));
+    const int cause = errno;
+    say(is_written ? JournalLevel::kNotice : JournalLevel::kError,
+        path_ + (is_written ? " can be written again"
+                            : std::string(" cannot be written: ") + std::strerror(cause)));
   }
   is_failing_ = !is_written;
 }
@@ -43,10 +41,6 @@ namespace {
 
 constexpr std::int64_t kSecondNs = kNanosecondsPerSecond;
 constexpr double kBusyPauseS = 60;  ///< if a busy server gives no time
-
-std::string text_of(const std::string& reason, Status status) {
-  return reason.empty() ? std::string(status_text(status)) : reason;
-}
 
 FetchResult get(const EdgeConfig& config, const std::string& url, std::int32_t timeout_ms,
                 const std::stop_token& stop) {
@@ -146,9 +140,10 @@ PriceReply PriceFetcher::publish(PriceReply answer, std::int64_t begin_ns) {
   }
   if (answer.status != reported_) {
     const bool is_well = answer.status == Status::kOk;
-    write_journal_line(is_well ? JournalLevel::kNotice : JournalLevel::kWarning,
-                       "bess-prices: prices: " +
-                           (is_well ? std::string("ok") : text_of(answer.reason, answer.status)));
+    const std::string reason =
+        answer.reason.empty() ? std::string(status_text(answer.status)) : answer.reason;
+    say(is_well ? JournalLevel::kNotice : JournalLevel::kWarning,
+        "prices: " + (is_well ? "ok" : reason));
     reported_ = answer.status;
   }
   publisher_.publish([&](PublishedPrices& prices) {

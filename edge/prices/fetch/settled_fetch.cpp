@@ -11,7 +11,6 @@
 #include "edge/prices/record/transport_security.h"
 #include "edge/records/account/settled_prices.h"
 #include "edge/records/log/atomic_file.h"
-#include "edge/records/log/journal.h"
 #include "shared/host/http_client.h"
 #include "shared/host/json.h"
 #include "shared/host/text.h"
@@ -25,22 +24,14 @@ namespace {
 
 constexpr std::size_t kAnswerBytesMax = 16 * 1024 * 1024;  // 100 days, with every field: 3 MB
 
-void report_settled(JournalLevel level, const std::string& text) {
-  write_journal_line(level, "bess-prices: settled prices: " + text);
-}
-
-/// The prices are public, but plain http would allow forgery.
-bool is_safe_url(const std::string& url) {
-  const UrlTransport transport = transport_of(url);
-  return transport == UrlTransport::kSecure || transport == UrlTransport::kLoopback;
-}
-
 void read_settled(TomlTable table, SettledSource& source) {
   table.line("url", source.url);
   table.line("ca_file", source.ca_file);
   table.finish();
   if (source.url.empty() || !table.ok()) return;
-  if (!is_safe_url(settled_url(source, 0, 0))) {
+  // The prices are public, but plain http would allow forgery.
+  const UrlTransport transport = transport_of(settled_url(source, 0, 0));
+  if (transport != UrlTransport::kSecure && transport != UrlTransport::kLoopback) {
     return table.fail("url", "must start with https://, or address this machine: http://127.0.0.1");
   }
   const bool has_from = source.url.find("{from}") != std::string::npos;
@@ -138,7 +129,7 @@ SettledResult fetch_settled(const SettledSource& source, std::int64_t now_utc_s,
   SettledResult result;
   SettledPrices prices;
   const std::string loss = prices.read(source.file);
-  if (!loss.empty()) report_settled(JournalLevel::kWarning, loss);
+  if (!loss.empty()) say(JournalLevel::kWarning, "settled prices: " + loss);
   const std::int64_t until_utc_s = local_midnight_utc_s(now_utc_s);
   const std::int64_t oldest_utc_s = until_utc_s - source.days * kSecondsPerDay;
   const std::string url = settled_url(source, prices.first_open(oldest_utc_s), until_utc_s);
@@ -171,9 +162,9 @@ void fetch_settled_daily(const SettledSource& source, const ScaledClock& clock,
       const SettledResult result = fetch_settled(source, now_utc_s, stop);
       schedule.tried(now_utc_s, result.is_whole && result.trouble.empty(), result.wait_s);
       if (!result.trouble.empty() && result.trouble != trouble_before) {
-        report_settled(JournalLevel::kWarning, result.trouble + "; retrying");
+        say(JournalLevel::kWarning, "settled prices: " + result.trouble + "; retrying");
       } else if (result.trouble.empty() && !trouble_before.empty()) {
-        report_settled(JournalLevel::kNotice, "fetched successfully again");
+        say(JournalLevel::kNotice, "settled prices: fetched successfully again");
       }
       trouble_before = result.trouble;
     }
