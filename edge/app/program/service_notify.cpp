@@ -1,7 +1,5 @@
 #include "edge/app/program/service_notify.h"
 
-#include <unistd.h>
-
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
@@ -18,11 +16,7 @@ ServiceNotify::ServiceNotify() {
   std::memcpy(address_.sun_path, name, length);
   if (name[0] == '@') address_.sun_path[0] = '\0';  // abstract namespace: no file, no final 0
   address_bytes_ = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + length);
-  fd_ = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-}
-
-ServiceNotify::~ServiceNotify() {
-  if (fd_ >= 0) close(fd_);
+  fd_ = FileDescriptor(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
 }
 
 void ServiceNotify::extend_start(std::int64_t seconds) const {
@@ -49,10 +43,10 @@ void ServiceNotify::cycle_done(const CycleRecord& r) {
 }
 
 void ServiceNotify::send(const char* text) const {
-  if (fd_ < 0) return;
+  if (fd_.get() < 0) return;
   const auto* to = reinterpret_cast<const sockaddr*>(&address_);
   const ssize_t ignored =
-      sendto(fd_, text, std::strlen(text), MSG_DONTWAIT | MSG_NOSIGNAL, to, address_bytes_);
+      sendto(fd_.get(), text, std::strlen(text), MSG_DONTWAIT | MSG_NOSIGNAL, to, address_bytes_);
   static_cast<void>(ignored);
 }
 

@@ -8,15 +8,13 @@
 #include <cstdint>
 
 #include "edge/core/control/control_types.h"
+#include "shared/file_descriptor.h"
 
 namespace bess {
 
 class ServiceNotify {
  public:
   ServiceNotify();
-  ServiceNotify(const ServiceNotify&) = delete;
-  ServiceNotify& operator=(const ServiceNotify&) = delete;
-  ~ServiceNotify();
 
   /// Extends the start timeout of the unit.
   void extend_start(std::int64_t seconds) const;
@@ -30,7 +28,7 @@ class ServiceNotify {
  private:
   void send(const char* text) const;
 
-  int fd_ = -1;
+  FileDescriptor fd_;
   sockaddr_un address_{};
   socklen_t address_bytes_ = 0;
   std::int32_t missed_ticks_before_ = 0;

@@ -30,10 +30,6 @@ PriceReader::PriceReader(const Settings& settings, const ScaledClock& clock)
   if (settings.model != nullptr) model_hash_ = settings.model->hash();
 }
 
-PriceReader::~PriceReader() {
-  if (notices_ >= 0) close(notices_);
-}
-
 void PriceReader::request(std::int64_t minute_utc_s, std::int64_t, std::int64_t) {
   wanted_minute_utc_s_ = minute_utc_s;
 }
@@ -90,15 +86,16 @@ OutlookExchange* PriceReader::await_outlook(std::int64_t patience_ns) {
 
 void PriceReader::await_change(std::int64_t until_monotonic_ns) {
   constexpr int kUnwatchedMs = 10, kWatchedMs = 1'000;
-  if (notices_ >= 0 && watch_ < 0) {
-    watch_ = inotify_add_watch(notices_, folder_of(settings_.path.c_str()).c_str(), IN_MOVED_TO);
+  if (notices_.get() >= 0 && watch_ < 0) {
+    watch_ =
+        inotify_add_watch(notices_.get(), folder_of(settings_.path.c_str()).c_str(), IN_MOVED_TO);
     if (watch_ >= 0) return;  // the file may have changed before the watch
   }
-  pollfd waiting{.fd = watch_ < 0 ? -1 : notices_, .events = POLLIN, .revents = 0};
+  pollfd waiting{.fd = watch_ < 0 ? -1 : notices_.get(), .events = POLLIN, .revents = 0};
   const int most_ms = watch_ < 0 ? kUnwatchedMs : kWatchedMs;
   if (poll(&waiting, 1, ms_until(until_monotonic_ns, most_ms)) <= 0) return;
   alignas(inotify_event) char events[1'024];
-  for (ssize_t size; (size = ::read(notices_, events, sizeof events)) > 0;) {
+  for (ssize_t size; (size = ::read(notices_.get(), events, sizeof events)) > 0;) {
     for (ssize_t at = 0; at < size;) {
       const auto* const event = reinterpret_cast<const inotify_event*>(events + at);
       if ((event->mask & IN_IGNORED) != 0) watch_ = -1;  // the folder was replaced

@@ -9,6 +9,7 @@
 #include "edge/core/control/outlook.h"
 #include "edge/prices/record/newest_row.h"
 #include "edge/prices/record/published_prices.h"
+#include "shared/file_descriptor.h"
 #include "shared/fixed_text.h"
 #include "shared/scaled_clock.h"
 
@@ -21,9 +22,6 @@ class PriceReader {
     const OutlookModel* model = nullptr;  ///< for a student by outlook
   };
   PriceReader(const Settings& settings, const ScaledClock& clock);
-  PriceReader(const PriceReader&) = delete;
-  PriceReader& operator=(const PriceReader&) = delete;
-  ~PriceReader();
 
   // Interface of ControlLoop (control_loop.h); bess-prices starts at the tick by itself.
   void request(std::int64_t minute_utc_s, std::int64_t start_monotonic_ns,
@@ -58,7 +56,7 @@ class PriceReader {
   std::int64_t wanted_minute_utc_s_ = 0;
   std::int64_t taken_answers_ = -1;
   std::int64_t taken_outlook_ = 0;
-  int notices_ = -1;  ///< inotify
+  FileDescriptor notices_;  ///< inotify
   int watch_ = -1;
   char bytes_[kPublishedBytesMax];
 };

@@ -6,6 +6,8 @@
 #include <sys/signalfd.h>
 #include <unistd.h>
 
+#include "shared/file_descriptor.h"
+
 namespace bess {
 
 class StopSignal {
@@ -17,22 +19,19 @@ class StopSignal {
     sigaddset(&set, SIGTERM);
     sigaddset(&set, SIGINT);
     pthread_sigmask(SIG_BLOCK, &set, nullptr);
-    fd_ = signalfd(-1, &set, SFD_CLOEXEC);
+    fd_ = FileDescriptor(signalfd(-1, &set, SFD_CLOEXEC));
   }
-  StopSignal(const StopSignal&) = delete;
-  StopSignal& operator=(const StopSignal&) = delete;
-  ~StopSignal() { close(fd_); }
 
   /// Readable once a stop was requested.
-  [[nodiscard]] int fd() const { return fd_; }
+  [[nodiscard]] int fd() const { return fd_.get(); }
   /// Blocks until a stop is requested.
   void wait() const {
     signalfd_siginfo info;
-    while (read(fd_, &info, sizeof info) != sizeof info) continue;
+    while (read(fd(), &info, sizeof info) != sizeof info) continue;
   }
 
  private:
-  int fd_;
+  FileDescriptor fd_;
 };
 
 }  // namespace bess
