@@ -126,51 +126,35 @@ std::string operator_note(const ControlSettings& control, const Hold& hold,
 
 namespace {
 
-/// One threshold of guard and student.
-struct Pair {
-  const char* key;
-  const char* action;
-  std::int32_t guard;
-  std::int32_t proved;
-  bool guard_reaches_further;  ///< it acts at prices not proved for the student
-  bool binds_student;
-};
-
-const char* who_answers(const Pair& pair) {
-  if (pair.guard_reaches_further) return "only the guard makes it ";
-  return pair.binds_student ? "only the student's proof makes it " : "nothing makes it ";
-}
-
-void add_difference(const Pair& pair, std::string& text) {
-  if (pair.guard == pair.proved) return;
-  if (!text.empty()) text += "; ";
-  text.append(pair.key).append(" = ").append(std::to_string(pair.guard));
-  text.append(", the student is proved for ").append(std::to_string(pair.proved));
-  text.append(": between them ").append(who_answers(pair)).append(pair.action);
-}
-
-std::string agreement(const PriceThresholds& both) {
-  std::string text = "charge at or below " + std::to_string(both.low_eur_per_mwh);
-  text.append(guard_alone_note(both.low_binds_student()));
-  text.append(", discharge at or above ").append(std::to_string(both.high_eur_per_mwh));
-  text.append(guard_alone_note(both.high_binds_student()));
-  return text.append(" EUR/MWh, as the student is proved for");
+/// Text of a threshold in which guard and student differ; empty: equal. `guard_acts_further`: it
+/// acts at prices not proved for the student.
+std::string difference_text(const char* key, const char* action, std::int32_t guard,
+                            std::int32_t proved, bool guard_acts_further, bool binds_student) {
+  if (guard == proved) return "";
+  const char* const who = guard_acts_further ? "only the guard makes it"
+                          : binds_student    ? "only the student's proof makes it"
+                                             : "nothing makes it";
+  return formatted("[guard] %s = %d, the student is proved for %d: between them %s %s", key, guard,
+                   proved, who, action);
 }
 
 }  // namespace
 
 SettingsNote compare_thresholds(const PriceThresholds& guard, const PriceThresholds& proved) {
-  if (guard == proved) return {.text = agreement(guard)};
-  SettingsNote note{.is_warning = true};
-  add_difference(
-      {"[guard] low_price_eur_per_mwh", "charge", guard.low_eur_per_mwh, proved.low_eur_per_mwh,
-       guard.low_eur_per_mwh > proved.low_eur_per_mwh, proved.low_binds_student()},
-      note.text);
-  add_difference({"[guard] high_price_eur_per_mwh", "discharge", guard.high_eur_per_mwh,
-                  proved.high_eur_per_mwh, guard.high_eur_per_mwh < proved.high_eur_per_mwh,
-                  proved.high_binds_student()},
-                 note.text);
-  return note;
+  if (guard == proved) {
+    return {.text = formatted(
+                "charge at or below %d%s, discharge at or above %d%s EUR/MWh, as the "
+                "student is proved for",
+                guard.low_eur_per_mwh, guard_alone_note(guard.low_binds_student()).data(),
+                guard.high_eur_per_mwh, guard_alone_note(guard.high_binds_student()).data())};
+  }
+  const std::string low = difference_text(
+      "low_price_eur_per_mwh", "charge", guard.low_eur_per_mwh, proved.low_eur_per_mwh,
+      guard.low_eur_per_mwh > proved.low_eur_per_mwh, proved.low_binds_student());
+  const std::string high = difference_text(
+      "high_price_eur_per_mwh", "discharge", guard.high_eur_per_mwh, proved.high_eur_per_mwh,
+      guard.high_eur_per_mwh < proved.high_eur_per_mwh, proved.high_binds_student());
+  return {.is_warning = true, .text = low + (low.empty() || high.empty() ? "" : "; ") + high};
 }
 
 }  // namespace bess

@@ -197,17 +197,21 @@ std::string loss_line(const Stored& one, const Stored& good) {
   return line;
 }
 
-/// Visits each place with another text: place, place in use, expected text, and whether it is a
-/// loss. None without a usable place.
-template <typename Visit>
-void for_each_other(const EdgeConfig& config, const Visit& visit) {
+/// A line for each place with another text; none without a usable place. `end_of(place, expected
+/// text, is_lost)` ends the line; empty: no line.
+template <typename EndOf>
+std::vector<std::string> lines_of_others(const EdgeConfig& config, const EndOf& end_of) {
+  std::vector<std::string> lines;
   const AllStored all = read_places(config);
   const Stored* const good = find_best(all);
-  if (good == nullptr) return;
+  if (good == nullptr) return lines;
   const std::string text = whole_text(*good);
   for (const Stored& one : all) {
-    if (one.text != text) visit(one, *good, text, is_loss(config, all, one, *good));
+    if (one.text == text) continue;
+    const std::string end = end_of(one.path, text, is_loss(config, all, one, *good));
+    if (!end.empty()) lines.push_back(loss_line(one, *good) + end);
   }
+  return lines;
 }
 
 /// Compares one key of the file; an error names it.
@@ -274,27 +278,17 @@ std::vector<std::int8_t> commissioned_points(const EdgeConfig& config) {
 }
 
 std::vector<std::string> commission_file_losses(const EdgeConfig& config) {
-  std::vector<std::string> lines;
-  for_each_other(config,
-                 [&](const Stored& one, const Stored& good, const std::string&, bool is_lost) {
-                   if (is_lost)
-                     lines.push_back(loss_line(one, good) + "; a start in control restores it");
-                 });
-  return lines;
+  return lines_of_others(config, [](const std::string&, const std::string&, bool is_lost) {
+    return is_lost ? "; a start in control restores it" : "";
+  });
 }
 
 std::vector<std::string> repair_commission_file(const EdgeConfig& config) {
-  std::vector<std::string> lines;
-  for_each_other(
-      config, [&](const Stored& one, const Stored& good, const std::string& text, bool is_lost) {
-        const bool is_written = replace_file_durably(one.path.c_str(), text);
-        const int cause = errno;
-        if (is_written && !is_lost) return;
-        lines.push_back(loss_line(one, good) +
-                        (is_written ? "; restored"
-                                    : std::string("; cannot be written: ") + std::strerror(cause)));
-      });
-  return lines;
+  const auto restore = [](const std::string& path, const std::string& text, bool is_lost) {
+    if (replace_file_durably(path.c_str(), text)) return std::string(is_lost ? "; restored" : "");
+    return formatted("; cannot be written: %s", std::strerror(errno));
+  };
+  return lines_of_others(config, restore);
 }
 
 }  // namespace bess
