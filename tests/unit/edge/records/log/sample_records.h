@@ -1,6 +1,10 @@
 // Hand-made decision records for the tests of outputs.
 #pragma once
 
+#include <algorithm>
+#include <cstring>
+
+#include "edge/records/log/record_fields.h"
 #include "edge/records/log/run_status.h"
 
 namespace bess {
@@ -96,55 +100,31 @@ inline CycleRecord full_record(std::int64_t cycle) {
   return r;
 }
 
+/// Sets a field to its value with the longest text; a flag is set.
+inline void set_longest(const Field<CycleRecord>& field, CycleRecord& r) {
+  const MemberAccess<CycleRecord>& access = field.access;
+  std::int64_t value = -1 - (INT64_MAX >> (64 - 8 * access.bytes));
+  if (access.kind == MemberKind::kFlag) value = 1;
+  if (access.kind == MemberKind::kUtc) value = 4'102'444'800;
+  if (access.kind == MemberKind::kName) {
+    value = 0;
+    for (std::int64_t code = 0; access.set(r, code); ++code) {
+      if (std::strlen(access.name_of(code)) > std::strlen(access.name_of(value))) value = code;
+    }
+  }
+  access.set(r, value);
+}
+
 /// The longest text of every field.
 inline CycleRecord longest_record() {
-  CycleRecord r = full_record(0);
-  r.utc_s = r.price.minute_utc_s = 4'102'444'800;
-  r.cycle = INT64_MIN;
-  r.mode = Mode::kStopping;
-  r.measurement = {.soc_e4 = INT32_MIN,
-                   .power_w = INT32_MIN,
-                   .capacity_wh = INT32_MIN,
-                   .charge_w_max = INT32_MIN,
-                   .discharge_w_max = INT32_MIN,
-                   .temperature_min_deci_c = INT32_MIN,
-                   .temperature_max_deci_c = INT32_MIN,
-                   .order_power_w = INT32_MIN};
-  r.price.price_centi_eur_per_mwh = r.price.fetch_us = INT32_MIN;
-  r.price.held_centi_eur_per_mwh = INT32_MIN;
-  r.price.received_monotonic_ns = INT64_MIN;
-  r.price.status = r.battery_status = Status::kNotExpressible;
-  r.price_age_s = r.ordered_power_w = r.decision_us = r.write_us = r.total_us = INT32_MIN;
-  r.student_action = Action::kDischarge;
-  r.reason = Reason::kUncontrolledPower;
-  r.missed_ticks = r.deadline_misses = r.unanswered_orders = INT32_MIN;
-  r.throughput = {.local_day = INT32_MIN, .soc_moved_e4 = INT32_MIN};
-  r.price_level = {.centi_q16 = INT64_MIN, .row_minute_utc_s = INT64_MIN};
-  r.context_class = INT16_MIN;
-  r.trip = {.reason = Reason::kUncontrolledPower, .utc_s = 4'102'444'800};
-  r.weak_answers = r.replaced_orders = r.ended_orders = INT32_MIN;
-  r.lost_orders = {.orders = UINT32_MAX, .judged = INT16_MIN, .lost = INT16_MIN};
-  r.reversals = {.steps = UINT32_MAX, .direction = INT16_MIN, .in_hour = INT16_MIN};
-  r.hold = {.held = true, .power_w = INT32_MIN, .until_utc_s = UINT32_MAX};
-  r.reserve_soc_e4 = r.days_since_full = INT16_MIN;
-  r.site = {.has_grid_power = true,
-            .grid_power_w = INT32_MIN,
-            .quarter_hour_import_wh = INT32_MIN,
-            .quarter_hour_battery_wh = INT32_MIN,
-            .order_cuts = INT32_MIN,
-            .meter_status = Status::kNotExpressible,
-            .limit_status = Status::kNotExpressible,
-            .house_is_implausible = true,
-            .trust = {.is_mismatch = true,
-                      .doubt = INT32_MIN,
-                      .pause_until_utc_s = 4'102'444'800,
-                      .pause_s = INT32_MIN,
-                      .steps = INT32_MIN,
-                      .step_squares = INT64_MIN,
-                      .error_products = INT64_MIN,
-                      .error_squares = INT64_MIN}};
-  r.standing_price = {INT64_MIN, INT32_MIN, INT32_MIN};
-  r.counters = {INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT32_MIN};
+  CycleRecord r;
+  for (const auto& field : kRecordFields) set_longest(field, r);
+  for (const auto& flag : kRecordFields) {  // "false" is longer, except where a value needs it
+    if (flag.access.kind != MemberKind::kFlag) continue;
+    flag.access.set(r, 0);
+    const auto exists = [&r](const auto& field) { return field.exists_in(r); };
+    if (!std::ranges::all_of(kRecordFields, exists)) flag.access.set(r, 1);
+  }
   r.counters.requests = 0;  // requests - failed_requests must not overflow
   r.counters.failed_requests = INT64_MAX;
   return r;
