@@ -1,4 +1,6 @@
-// bess-hil run: scenarios in one or both times.
+// bess-hil: runs scenarios with the edge, in one or both times, and judges them by the battery
+// trace.
+//   exit 0 all passed   1 one failed, or a file is bad   2 the command line is bad
 #include <fmt/core.h>
 #include <unistd.h>
 
@@ -16,14 +18,15 @@
 #include <thread>
 
 #include "edge/records/log/log_text.h"
+#include "shared/host/command_line.h"
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
+#include "shared/local_time.h"
 #include "shared/utc_text.h"
 #include "tools/hil_runner/base/stop_request.h"
 #include "tools/hil_runner/real/real_options.h"
 #include "tools/hil_runner/run/agreement.h"
-#include "tools/hil_runner/run/hil_command.h"
 #include "tools/hil_runner/run/report_page.h"
 #include "tools/hil_runner/run/run_scenario.h"
 #include "tools/hil_runner/scenario/rules.h"
@@ -319,8 +322,6 @@ void run(const RunOptions& options) {
   if (ran == 0) fail("no run: all scenarios were skipped");
 }
 
-}  // namespace
-
 void add_run_command(ProgramCommand& app) {
   auto options = std::make_shared<RunOptions>();
   ProgramCommand command =
@@ -372,4 +373,14 @@ void add_run_command(ProgramCommand& app) {
   command.runs([options] { run(*options); });
 }
 
+}  // namespace
 }  // namespace bess
+
+int main(int argc, char** argv) {
+  bess::set_market_time_zone();
+  bess::CommandLine command_line("bess-hil", "bess-hil: hardware-in-the-loop scenarios",
+                                 BESS_VERSION);
+  bess::ProgramCommand root = command_line.root();
+  bess::add_run_command(root);
+  return command_line.run(argc, argv);
+}
