@@ -160,11 +160,10 @@ int run_hold(const HoldOptions& options, SettingsFile& settings) {
   const std::int64_t power_w_max = config.control.guard.power_w;
   const std::int64_t power_w = *options.power_w;
   if (power_w > power_w_max || power_w < -power_w_max) {
-    report(JournalLevel::kError,
-           "hold %lld W exceeds [battery] power_w of %s: choose -%lld to %lld",
-           static_cast<long long>(power_w), settings.path.c_str(),
-           static_cast<long long>(power_w_max), static_cast<long long>(power_w_max));
-    return 1;
+    return failed(formatted("hold %lld W exceeds [battery] power_w of %s: choose -%lld to %lld",
+                            static_cast<long long>(power_w), settings.path.c_str(),
+                            static_cast<long long>(power_w_max),
+                            static_cast<long long>(power_w_max)));
   }
   set_market_time_zone();
   const std::int64_t now_utc_s = utc_seconds(config.clock);

@@ -5,6 +5,7 @@
 #include "edge/app/program/find_battery.h"
 #include "edge/app/program/startup.h"
 #include "edge/records/log/journal.h"
+#include "shared/host/text.h"
 
 namespace bess {
 namespace {
@@ -41,8 +42,7 @@ int run_release(const ReleaseOptions& options, SettingsFile& settings) {
   }
   const Status status = battery.release();
   if (status != Status::kOk) {
-    report(JournalLevel::kError, "release %s: %s", place.c_str(), status_text(status).data());
-    return 1;
+    return failed(formatted("release %s: %s", place.c_str(), status_text(status).data()));
   }
   std::printf("released   %s is in its own mode\n", place.c_str());
   return 0;

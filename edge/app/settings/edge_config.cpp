@@ -21,12 +21,13 @@ void keep_path(TomlTable& table, std::string_view key, const std::string& path,
   if (!kept.assign(path)) table.fail(key, "is too long");
 }
 
-void keep_run_paths(TomlTable& table, const std::string& path, StateSettings& state,
-                    EventLogSettings& log) {
-  keep_path(table, "run_folder", path, state.run_folder);
-  keep_path(table, "run_folder", path + "/decisions.ring", log.run_ring);
-  keep_path(table, "run_folder", path + "/status.json", log.run_status);
-  keep_path(table, "run_folder", path + "/metrics.prom", log.run_metrics);
+void keep_folder(TomlTable& table, std::string_view key, const std::string& path,
+                 FixedText<511>& folder, FixedText<511>& ring, FixedText<511>& status,
+                 FixedText<511>& metrics) {
+  keep_path(table, key, path, folder);
+  keep_path(table, key, path + "/decisions.ring", ring);
+  keep_path(table, key, path + "/status.json", status);
+  keep_path(table, key, path + "/metrics.prom", metrics);
 }
 
 /// The log is in the [state] folders by default.
@@ -39,11 +40,11 @@ void read_state(TomlTable table, StateSettings& state, EventLogSettings& log) {
   FixedText<255> run_folder(kInstalledEdge.run_beside(path));
   table.text("run_folder", run_folder);
   table.finish();
-  if (!run_folder.empty()) keep_run_paths(table, table.resolved(run_folder.view()), state, log);
-  keep_path(table, "folder", path, state.folder);
-  keep_path(table, "folder", path + "/decisions.ring", log.ring);
-  keep_path(table, "folder", path + "/status.json", log.status);
-  keep_path(table, "folder", path + "/metrics.prom", log.metrics);
+  if (!run_folder.empty()) {
+    keep_folder(table, "run_folder", table.resolved(run_folder.view()), state.run_folder,
+                log.run_ring, log.run_status, log.run_metrics);
+  }
+  keep_folder(table, "folder", path, state.folder, log.ring, log.status, log.metrics);
 }
 
 void read_log(TomlTable table, EventLogSettings& log) {
