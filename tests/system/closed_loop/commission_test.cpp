@@ -37,6 +37,11 @@ struct CommissionSite {
   CommissionResult commission(const CommissionSettings& settings = {}) {
     return SignCheck<FakeBattery, FakeClock>(settings, battery, clock).run();
   }
+  CommissionResult passes(const CommissionSettings& settings = {}) {
+    CommissionResult result = commission(settings);
+    EXPECT_EQ(result.verdict, CommissionVerdict::kPassed);
+    return result;
+  }
   CommissionResult commission_with(const CommissionMeter& meter) {
     return SignCheck<FakeBattery, FakeClock, CommissionMeter>({}, battery, clock, meter).run();
   }
@@ -57,8 +62,7 @@ struct CommissionSite {
 TEST(Commission, DrivesABatteryBothWays) {
   CommissionSite site(0.3);
   const std::int64_t start_ns = site.clock.now_ns;
-  const CommissionResult result = site.commission();
-  EXPECT_EQ(result.verdict, CommissionVerdict::kPassed);
+  const CommissionResult result = site.passes();
   EXPECT_TRUE(result.charge.is_tested && result.discharge.is_tested);
   EXPECT_EQ(result.charge.measured_power_w, 500);
   EXPECT_EQ(result.discharge.measured_power_w, -500);
@@ -72,14 +76,12 @@ TEST(Commission, DrivesABatteryBothWays) {
 
 TEST(Commission, SaysWhichDirectionItsSocDoesNotLeave) {
   CommissionSite full(1.0);
-  const CommissionResult discharged = full.commission();
-  EXPECT_EQ(discharged.verdict, CommissionVerdict::kPassed);
+  const CommissionResult discharged = full.passes();
   EXPECT_FALSE(discharged.charge.is_tested);
   EXPECT_EQ(discharged.discharge.measured_power_w, -500);
   EXPECT_EQ(full.ordered(), (std::vector{0, -500, 0, -4'000, 0}));
   CommissionSite empty(0.1);
-  const CommissionResult charged = empty.commission();
-  EXPECT_EQ(charged.verdict, CommissionVerdict::kPassed);
+  const CommissionResult charged = empty.passes();
   EXPECT_FALSE(charged.discharge.is_tested);
   CommissionSite between(0.5);
   EXPECT_EQ(between.commission({.soc_min_e4 = 4'950, .soc_max_e4 = 5'050}).verdict,
@@ -113,15 +115,11 @@ TEST(Commission, RefusesLessThanItsMapAllowsAndSaysWhatToSet) {
   const CommissionResult result = site.commission();
   EXPECT_EQ(result.verdict, CommissionVerdict::kTooLittle);
   EXPECT_EQ(result.wanted_tolerance_w, 300);  // 225 W are missing
-  CommissionSettings reported;
-  reported.response.tolerance_w = 300;
-  EXPECT_EQ(CommissionSite({.gain = 0.55}).commission(reported).verdict,
-            CommissionVerdict::kPassed);
+  CommissionSite({.gain = 0.55}).passes({.response = {.tolerance_w = 300}});
 }
 
 TEST(Commission, MeasuresALagAndProposesTheTimeToSettle) {
-  const CommissionResult passed = CommissionSite({.delay_s = 5}).commission();
-  EXPECT_EQ(passed.verdict, CommissionVerdict::kPassed);
+  const CommissionResult passed = CommissionSite({.delay_s = 5}).passes();
   EXPECT_NEAR(passed.charge.speed.dynamics.dead_time_s, 5, 1.001);
   EXPECT_NEAR(static_cast<double>(passed.charge.came_ms), 5'000, 1'001);
   const CommissionResult refused = CommissionSite({.delay_s = 25}).commission();
@@ -129,10 +127,7 @@ TEST(Commission, MeasuresALagAndProposesTheTimeToSettle) {
   EXPECT_GE(refused.wanted_settle_s, 25);
   EXPECT_LE(refused.wanted_settle_s, 32);
   EXPECT_EQ(refused.wanted_ramp_w_max, 0);
-  CommissionSettings reported;
-  reported.response.settle_s = refused.wanted_settle_s;
-  EXPECT_EQ(CommissionSite({.delay_s = 25}).commission(reported).verdict,
-            CommissionVerdict::kPassed);
+  CommissionSite({.delay_s = 25}).passes({.response = {.settle_s = refused.wanted_settle_s}});
 }
 
 /// 500 W are there in 17 s; a reversal of 8 kW takes 267 s, longer than any map may say.
@@ -142,11 +137,9 @@ TEST(Commission, MeasuresARampAndProposesTheStepThatItManages) {
   EXPECT_NEAR(ramp_w_per_s(result.charge.speed), 30, 2);
   EXPECT_EQ(result.wanted_settle_s, 100);
   EXPECT_NEAR(result.wanted_ramp_w_max, 2'400, 200);
-  CommissionSettings reported;
-  reported.response.settle_s = result.wanted_settle_s;
-  reported.step_w_max = result.wanted_ramp_w_max;
-  EXPECT_EQ(CommissionSite({.ramp_w_per_s = 30}).commission(reported).verdict,
-            CommissionVerdict::kPassed);
+  CommissionSite({.ramp_w_per_s = 30})
+      .passes({.response = {.settle_s = result.wanted_settle_s},
+               .step_w_max = result.wanted_ramp_w_max});
   // 500 W in 2.5 s, 8 kW in 40.
   const CommissionResult seen = CommissionSite({.ramp_w_per_s = 200}).commission();
   EXPECT_EQ(seen.verdict, CommissionVerdict::kSlow);
@@ -159,8 +152,7 @@ TEST(Commission, MeasuresARampAndProposesTheStepThatItManages) {
 TEST(Commission, WhatOneStepAloneShowedIsAWarning) {
   CommissionSite site(0.12);
   site.battery.physics.set_time_constant(5);
-  const CommissionResult result = site.commission();
-  EXPECT_EQ(result.verdict, CommissionVerdict::kPassed);
+  const CommissionResult result = site.passes();
   EXPECT_EQ(site.ordered(), (std::vector{0, 500, 0, -500, 0, 4'000, 0}));
   EXPECT_TRUE(result.charge.speed.has_two);
   EXPECT_FALSE(result.charge.speed.is_doubtful);
@@ -168,7 +160,7 @@ TEST(Commission, WhatOneStepAloneShowedIsAWarning) {
   EXPECT_TRUE(result.discharge.speed.is_doubtful);
   CommissionSite bound(0.5);
   bound.battery.physics.set_time_constant(5);
-  EXPECT_EQ(bound.commission({.drives_further = false}).verdict, CommissionVerdict::kPassed);
+  bound.passes({.drives_further = false});
   EXPECT_EQ(bound.ordered(), (std::vector{0, 500, 0, -500, 0}));
 }
 
@@ -187,8 +179,7 @@ TEST(Commission, TheConnectionBoundsTheLargerSteps) {
 TEST(Commission, ABatteryThatHoldsBackIsNotSlow) {
   CommissionSite site(0.5);
   site.battery.physics.set_derating(0.4);
-  const CommissionResult result = site.commission();
-  EXPECT_EQ(result.verdict, CommissionVerdict::kPassed);
+  const CommissionResult result = site.passes();
   EXPECT_TRUE(result.charge.is_held_back);
   EXPECT_EQ(result.charge.further_measured_w, 1'600);
   EXPECT_FALSE(result.charge.speed.has_two);
@@ -291,8 +282,7 @@ TEST(Commission, SaysWhyTheLinkFailed) {
 TEST(Commission, TriesAgainToReleaseAndSaysWhenItCannot) {
   CommissionSite site;
   site.battery.failing_releases = 3;
-  CommissionResult result = site.commission();
-  EXPECT_EQ(result.verdict, CommissionVerdict::kPassed);
+  CommissionResult result = site.passes();
   EXPECT_FALSE(site.battery.physics.dispatch_active());
   site.battery.inverted = true;
   site.battery.failing_releases = 1'000;
@@ -304,7 +294,7 @@ TEST(Commission, TriesAgainToReleaseAndSaysWhenItCannot) {
 TEST(Commission, RefreshesTheWatchdog) {
   CommissionSite site;
   site.battery.refresh_s = 9;
-  EXPECT_EQ(site.commission().verdict, CommissionVerdict::kPassed);
+  site.passes();
   EXPECT_EQ(site.battery.refreshed_ns.size(), 4 * 1U + 2 * 3U);  // 10 s of rest, 30 s of driving
 }
 

@@ -165,6 +165,13 @@ class DyingDisk : public SiteTest {
     swap_battery(true);
     ASSERT_NE(await_cycle("reason", "wrong_direction", kCyclesToTrip), "") << said_;
   }
+  /// Trips and ends; then the right battery is back.
+  void end_tripped() {
+    trip();
+    await_cycle("reason", "wrong_direction", 6);
+    end_run();
+    swap_battery(false);
+  }
   void end_run() {
     EXPECT_EQ(SimulatedSite::stop(*controller_), 0);
     said_ += controller_->read_all();
@@ -312,10 +319,7 @@ class DyingDiskStart : public DyingDisk, public ::testing::WithParamInterface<Ac
 
 TEST_P(DyingDiskStart, ATripIsNotForgotten) {
   ASSERT_NO_FATAL_FAILURE(start_and_run(true));
-  trip();
-  await_cycle("reason", "wrong_direction", 6);
-  end_run();
-  swap_battery(false);
+  end_tripped();
   said_.clear();
   GetParam().happen(disk_);
   if (GetParam().boots) lose_folder(site_.folder.file("run"));
@@ -445,10 +449,7 @@ TEST_F(DyingDisk, UnmountedDuringARunItContinuesInTheFolderBelow) {
 TEST_F(DyingDisk, MountedLateItsTripCounts) {
   disk_.unmount();
   ASSERT_NO_FATAL_FAILURE(start_and_run(false));
-  trip();
-  await_cycle("reason", "wrong_direction", 6);
-  end_run();
-  swap_battery(false);
+  end_tripped();
   fs::rename(disk_.folder(), site_.folder.file("card"));
   fs::create_directory(disk_.folder());
   commission(false);
