@@ -204,12 +204,14 @@ void run_evaluate(const EvaluateArguments& options) {
   }
   if (!options.date.empty()) setup.only_day = select_day(market, setup.days, options.date);
   JudgedDays judged = judged_days(market, parse_split(options.split));
-  judged.last_learnt = last_learnt_day(fitting);
+  // Of a student or teacher, the price file does not tell the training days.
+  const bool has_fitted = std::ranges::any_of(options.policies, is_fitted);
+  judged.last_learnt = has_fitted ? last_learnt_day(fitting) : "";
   if (setup.only_day) judged.dates = {setup.only_day->date()};
   const NamedEvaluation foresight = evaluate_policy(kForesightName, setup, nullptr);
   std::vector<NamedEvaluation> results;
   Records records;
-  if (std::ranges::any_of(options.policies, is_fitted)) {
+  if (has_fitted) {
     warn_unknown_regimes("fitted policies", fitting, market, setup.days);
   }
   for (const std::string& name : options.policies) {

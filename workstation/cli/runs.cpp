@@ -87,7 +87,7 @@ void add_runs_commands(ProgramCommand& app) {
       "Examples:\n"
       "  bess-train runs compare runs/first runs/second\n"
       "  bess-train runs compare runs/seeds --json\n"
-      "  bess-train runs compare runs/* --html runs/all.html");
+      "  bess-train runs compare runs --html runs/all.html");
   command.runs([options] { compare(*options); });
 }
 

@@ -90,24 +90,11 @@ std::string gain_row(const HeadlineGain& gain, double reach) {
   return row + "</tr>\n";
 }
 
-/// Cost of the correction as text; a difference is claimed only outside its interval.
-std::string correction_text(const HeadlineGain& correction) {
-  const PairedDifference& d = correction.difference.front();
-  if (!is_shown(d)) {
-    return fmt::format("Cost of the correction: not significant, {} against the {}",
-                       difference_text(d), correction.against);
-  }
-  const std::string size = fmt::format("{:.1f}{}", std::abs(d.mean), errors_text(d.errors));
-  return d.mean < 0 ? "Cost of the correction: " + size
-                    : "The correction has no cost: it earns " + size + " more";
-}
-
-/// Cost of the rules: the change with opposite sign.
-std::string rules_text(const HeadlineGain& rules) {
-  const PairedDifference& d = rules.difference.front();
-  if (!is_shown(d)) return fmt::format("not significant, {}", difference_text(d));
-  return d.mean < 0 ? fmt::format("{:.1f}{}", -d.mean, errors_text(d.errors))
-                    : "none, they earn " + difference_text(d);
+/// Gain as text, negative when it costs; claimed only outside its interval.
+std::string effect_text(const HeadlineGain& gain, std::string_view against) {
+  const PairedDifference& d = gain.difference.front();
+  return fmt::format("{}{} EUR per day per MWh of capacity against the {}",
+                     is_shown(d) ? "" : "not significant, ", difference_text(d), against);
 }
 
 /// Accounting of the result, as text, with the day-reset figure.
@@ -225,13 +212,13 @@ std::string headline_html(const Headline& headline) {
       headline.profit, errors_text(headline.errors), headline.name, headline.days,
       html_escaped(headline_accounting(headline)));
   if (headline.correction) {
-    text += fmt::format("<li id=\"price-of-correction\">{}; EUR per day per MWh of capacity</li>\n",
-                        html_escaped(correction_text(*headline.correction)));
+    text +=
+        fmt::format("<li id=\"effect-of-correction\">Effect of the correction: {}</li>\n",
+                    html_escaped(effect_text(*headline.correction, headline.correction->against)));
   }
   if (headline.rules) {
-    text += fmt::format(
-        "<li id=\"price-of-rules\">Cost of the rules: {}; EUR per day per MWh of capacity</li>\n",
-        html_escaped(rules_text(*headline.rules)));
+    text += fmt::format("<li id=\"effect-of-rules\">Effect of the rules: {}</li>\n",
+                        html_escaped(effect_text(*headline.rules, kPlainName)));
   }
   if (headline.foresight_share) {
     text += fmt::format("<li>{:.1f} % of the profit of perfect foresight</li>\n",

@@ -160,7 +160,10 @@ class Refresh {
     const FolderLock lock(run_.path);
     fs::create_directories(candidate_.path);
     const FolderLock proposal_lock(candidate_.path);
-    if (!load_verdict(candidate_) && !make_proposal(present)) return;
+    if (!load_verdict(candidate_) && !make_proposal(present)) {
+      fs::remove_all(candidate_.path);
+      return;
+    }
     const CandidateVerdict verdict = *load_verdict(candidate_);
     report_line("{}", read_file(candidate_.file(kText)));
     if (verdict.against != file_mark(run_.file(kStudent))) {
@@ -197,10 +200,16 @@ class Refresh {
   /// False, with a message, when there is no candidate.
   [[nodiscard]] bool make_proposal(const RunRecord& present) const {
     std::optional<RunRecord> record = load_run_record(candidate_);
-    if (!record && !(record = begin(present))) {
-      fs::remove_all(candidate_.path);
-      return false;
+    if (!record) {
+      try {
+        record = begin(present);
+      } catch (...) {
+        std::error_code failed;
+        fs::remove(candidate_.path, failed);  // unless it has a download to continue
+        throw;
+      }
     }
+    if (!record) return false;
     const MinuteSeries series = read_minute_file(candidate_.file(kMarket));
     end_when_interrupted("finished stages are kept: repeat the command to continue");
     RunStages stages(candidate_, *record, series, stdout);

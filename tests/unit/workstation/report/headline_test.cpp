@@ -99,12 +99,12 @@ TEST(Headline, ADifferenceIsClaimedBeyondItsIntervalOnly) {
 }
 
 /// A run with rules: their cost is not the correction's.
-TEST(Headline, ThePriceIsSplitBetweenRulesAndCorrection) {
+TEST(Headline, TheEffectIsSplitBetweenRulesAndCorrection) {
   std::vector<NamedEvaluation> dear = all();
   const std::string none = headline_html(headline_of(dear).value());
   dear[2] = evaluated(kPlainName, {110, 130.2, 149.8}, 8);
   const std::string html = headline_html(headline_of(dear).value());
-  EXPECT_THAT(html, HasSubstr("id=\"price-of-correction\""));
+  EXPECT_THAT(html, HasSubstr("id=\"effect-of-correction\""));
   EXPECT_THAT(html, Names("5.0"));
   dear[2] = evaluated(kPlainName, {300, 320.2, 339.8}, 8);
   dear.push_back(evaluated(under_rule_name("rest"), {110, 130.2, 149.8}, 8));

@@ -126,7 +126,7 @@ TEST(Report, APageOfAFailedProofIsAboutTheUnprovedStudent) {
   const std::string html = html_of(in, folder.file("run"));
   const std::string markup = markup_of(html);
   EXPECT_EQ(first_unbalanced_tag(markup), "");
-  for (const char* untrue : {"orrected student", "price-of-correction"}) {
+  for (const char* untrue : {"orrected student", "effect-of-correction"}) {
     EXPECT_EQ(count_of(markup, untrue), 0U) << untrue;
   }
   for (const char* said : {"href=\"#failure\"", "unproved student</th>", "data-broken=\"1\""}) {
