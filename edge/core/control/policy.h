@@ -26,6 +26,8 @@ inline std::int32_t context_centi_of(const CycleRecord& record) {
   return student_outlook() != nullptr ? record.outlook.break_even_centi
                                       : record.price_level.centi_eur_per_mwh();
 }
+/// Line of decision_signature.txt beside the weights; empty without that file.
+const char* expected_signature();
 Action decide_with_student(const LatticeState& state);
 
 /// Actions that the operator's exported rules permit.
