@@ -92,7 +92,7 @@ FixedText<159> battery_place(const BatteryConfig& battery);
 
 // Keys of a configuration without effect, with the reason.
 
-/// "[price] timeout_ms: retired, ...".
+/// "[price] timeout_ms: retired, the value is fixed; delete it".
 std::string retired_key_text(const RetiredKey& old);
 
 /// "ramp_w_max: no step is larger than 8000 W".

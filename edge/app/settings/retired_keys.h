@@ -1,5 +1,5 @@
-// Retired keys of earlier versions, whose values are fixed now. A configuration with them still
-// works, and --check and status name them.
+// Retired keys of earlier versions. A configuration with them still works, and --check and status
+// name them.
 #pragma once
 
 #include <string_view>
@@ -12,8 +12,13 @@ namespace bess {
 struct RetiredKey {
   std::string_view section;
   std::string_view key;
+  std::string_view instead = "the value is fixed";
 };
-using RetiredKeys = StaticVector<RetiredKey, 40>;
+using RetiredKeys = StaticVector<RetiredKey, 48>;
+
+inline constexpr std::string_view kInStatement = "see bess-train log statement --config";
+inline constexpr std::string_view kInBatteryName = "set [battery] name";
+inline constexpr std::string_view kInCommand = "alerts go to [notify] command or MQTT";
 
 inline constexpr RetiredKey kRetiredKeys[] = {
     {"battery", "capacity_tolerance_percent"},
@@ -40,16 +45,24 @@ inline constexpr RetiredKey kRetiredKeys[] = {
     {"meter", "age_s_max"},
     {"meter", "check_every_s"},
     {"meter", "house_rise_w"},
-    {"contract", "import_adder_eur_per_mwh"},  // now in `bess-train log statement --config`
-    {"contract", "import_percent"},
-    {"contract", "export_fee_eur_per_mwh"},
-    {"contract", "export_percent"},
-    {"contract", "wear_eur_per_mwh"},
+    {"contract", "import_adder_eur_per_mwh", kInStatement},
+    {"contract", "import_percent", kInStatement},
+    {"contract", "export_fee_eur_per_mwh", kInStatement},
+    {"contract", "export_percent", kInStatement},
+    {"contract", "wear_eur_per_mwh", kInStatement},
     {"notify", "mqtt_discovery_prefix"},
     {"notify", "mqtt_hold_minutes"},
+    {"notify", "node", kInBatteryName},
+    {"notify", "mail_to", kInCommand},
+    {"notify", "mail_from", kInCommand},
+    {"notify", "sendmail", kInCommand},
+    {"notify", "webhook_url", kInCommand},
+    {"notify", "webhook_header_file", kInCommand},
+    {"notify", "webhook_ca_file", kInCommand},
+    {"page", "name", kInBatteryName},
     {"page", "program"},
     {"page", "refresh_s"},
-    {"page", "token_file"},
+    {"page", "token_file", "the page is read-only"},
     {"settled", "days"},
 };
 static_assert(std::ssize(kRetiredKeys) <= RetiredKeys::capacity());

@@ -59,8 +59,8 @@ void add_site(const EdgeConfig& config, std::vector<std::string>& keys) {
 }  // namespace
 
 std::string retired_key_text(const RetiredKey& old) {
-  return "[" + std::string(old.section) + "] " + std::string(old.key) +
-         ": retired, the value is fixed; delete it";
+  return "[" + std::string(old.section) + "] " + std::string(old.key) + ": retired, " +
+         std::string(old.instead) + "; delete it";
 }
 
 std::vector<std::string> keys_without_effect(const EdgeConfig& config) {

@@ -33,11 +33,13 @@ std::string headline(const Message& message) {
 std::string run_alert_command(const NotifySettings& settings, const Message& message,
                               const std::stop_token& stop) {
   const std::string text = text_of(settings, message);
+  const std::string head = headline(message);
+  const std::string title = head.substr(0, head.find(';'));  // what was found, without the remedy
   // Passed by env as separate words, so that the shell interprets no part of a text.
   const std::vector<std::string> words = {
       "/usr/bin/env",
       "BESS_SEVERITY=" + message.severity,
-      "BESS_TITLE=[bess " + settings.name + "] " + one_line(headline(message), 200),
+      "BESS_TITLE=[bess " + settings.name + "] " + one_line(title, 200),
       "BESS_TEXT=" + text,
       "BESS_NODE=" + settings.name,
       "BESS_KEY=" + one_line(message.key, 200),

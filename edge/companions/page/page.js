@@ -7,6 +7,7 @@ const kHourMs = 3600000;
 const kDayMs = 24 * kHourMs;
 /** Reasons whose cycle had no price, or not a current one: it is not drawn as a price. */
 const kWithoutPrice = new Set(["no_price", "price_age", "price_qh", "frozen_price", "stand_in"]);
+const isPriced = (reason) => !kWithoutPrice.has(reason);
 Chart.defaults.plugins.legend.position = "bottom";
 let shownCycle = null;
 let state = null;  // newest answer of api/status
@@ -49,6 +50,8 @@ async function ask(path) {
   return answer.headers.get("Content-Type").startsWith("text/csv") ? text : JSON.parse(text);
 }
 
+/** Text of a program for the page, without its marks of commands. */
+const plain = (text) => text && text.replaceAll("`", "");
 const does = (watts) => watts > 0 ? `charges at ${say(watts, 0, "W")}`
   : watts < 0 ? `discharges at ${say(-watts, 0, "W")}` : "is idle";
 const isRunning = () => state.health !== "not running";
@@ -59,7 +62,7 @@ function showStatus(status) {
   document.title = byId("name").textContent = status.name || "Battery";
   byId("health").textContent = status.health;
   byId("health").className = "badge " + kind;
-  lines("problems", [...status.health_reasons, status.unknown,
+  lines("problems", [...status.health_reasons.map(plain), status.unknown,
                      status.contact && "Call: " + status.contact], "li");
   for (const problem of byId("problems").children) {
     problem.classList.toggle("bad", problem.textContent.startsWith("CRITICAL"));
@@ -70,7 +73,7 @@ function showStatus(status) {
     since: status.start_utc && moment(status.start_utc), update: status.update,
     "trained on prices of":
       status.trained_from && `${status.trained_from} to ${status.trained_until}`,
-    retrain: status.retrain, student: status.student, training: status.provenance};
+    retrain: status.retrain, student: status.student};
   fill("facts", Object.entries(facts).filter(([, value]) => value).flatMap(
     ([name, value]) => [element("dt", name), element("dd", value)]));
   showNext(status.next, status.no_effect);
@@ -87,10 +90,10 @@ function drawn(name, attributes, text = "") {
 function showFlow(last) {
   const battery = last.has_measurement ? last.battery_power_w : undefined;
   const grid = last.has_grid_power ? last.grid_power_w : undefined;
-  const isPriced = last.has_price && !kWithoutPrice.has(last.reason);
   const nodes = [
     {x: 60, name: "Grid", watts: grid ?? battery, value: say(grid ?? undefined, 0, "W"),
-     note: isPriced ? price(last.price_centi_eur_per_mwh / 100) : "no current price"},
+     note: last.has_price && isPriced(last.reason) ? price(last.price_centi_eur_per_mwh / 100)
+       : "no current price"},
     {x: 300, name: "Battery", watts: battery, value: say(battery, 0, "W"),
      note: last.has_measurement ? percent(last.soc_e4 / 100) : "not measured"}];
   if (grid !== undefined && battery !== undefined) {
@@ -118,7 +121,9 @@ function showNext(next, noEffect) {
     texts.push(
       `At ${next.local} it ${does(next.power_w)} if price and state of charge stay.`);
   }
-  if (next?.reason) texts.push(`${next.reason} overrides it${next.ends && ", " + next.ends}.`);
+  if (next?.reason) {
+    texts.push(plain(`${next.reason} overrides it${next.ends && ", " + next.ends}.`));
+  }
   for (const change of next?.reserve_changes || []) {
     texts.push(`Reserve from ${moment(change.utc)}: ${percent(change.soc_percent)}.`);
   }
@@ -131,7 +136,7 @@ function showNext(next, noEffect) {
 function showWhy(why) {
   const at = why.margins;
   const cause = why.reason !== "student"
-    ? `${why.meaning} (${why.reason}) since ${moment(why.since_utc)}`
+    ? `${plain(why.meaning)} (${why.reason}) since ${moment(why.since_utc)}`
     : `the price of ${price(why.price_eur_per_mwh)} is ` +
       (why.ordered_power_w > 0 ? "low" : why.ordered_power_w < 0 ? "high" : "neither low nor high");
   const what = !isRunning()
@@ -139,10 +144,10 @@ function showWhy(why) {
     : why.mode !== "running" ? `No control, mode ${why.mode}`
     : state.control ? `The battery ${does(why.ordered_power_w)}`
     : `Read-only, nothing is written; decided: ${say(why.ordered_power_w, 0, "W")}`;
-  byId("sentence").textContent = `${what}: ${cause}${why.ends && ", " + why.ends}.`;
+  byId("sentence").textContent = `${what}: ${cause}${why.ends && ", " + plain(why.ends)}.`;
   const texts = [
-    `${why.local}: price ${price(why.price_eur_per_mwh)}, state of charge ` +
-    `${percent(why.soc_percent)}. ` +
+    `${why.local}: ${isPriced(why.reason) ? "" : "last "}price ` +
+    `${price(why.price_eur_per_mwh)}, state of charge ${percent(why.soc_percent)}. ` +
     (why.student ? `Student: ${why.student}.` : "No student decision.")];
   if (at) {
     texts.push(`It charges up to ${price(at.charge_up_to_eur_per_mwh)} and discharges from ` +
@@ -177,7 +182,7 @@ function showMonth(month) {
     `In control ${percent(100 * month.stops.driven_share)} of the time.` +
     (month.stops.by_reason.length > 0 ? " Control cycles by other reasons than the student:" : "");
   lines("stops", month.stops.by_reason.map(
-    (stop) => `${stop.meaning.replaceAll("`", "")} (${stop.reason}): ${say(stop.cycles)}, ` +
+    (stop) => `${plain(stop.meaning)} (${stop.reason}): ${say(stop.cycles)}, ` +
       `${say(stop.not_driven)} of them not driven`), "li");
   lines("columns", ["day", ...kColumns.map(([head]) => head)], "th");
   fill("days", month.days.map((day) => element("tr", "", element("th", day.date),
@@ -212,7 +217,7 @@ function cyclesOf(csv) {
   const column = (name) => head.indexOf(name);
   const number = (row, name, divisor) => Number(row[column(name)]) / divisor;
   const priced = (row) => row[column("price_minute_utc")] !== "none" &&
-    !kWithoutPrice.has(row[column("reason")]);
+    isPriced(row[column("reason")]);
   return rows.filter((row) => row[column("mode")] !== "stopping").map((row) => ({
     time: Date.parse(row[column("utc")]),
     price: priced(row) ? number(row, "price_centi_eur_per_mwh", 100) : NaN,
@@ -236,10 +241,12 @@ function drawDay(csv) {
   const cycles = cyclesOf(csv);
   const plan = planned();
   const stepped = {stepped: true};
-  const hours = (scale) => {
+  const hours = (scale) => {  // every third full hour, or more of a young log
+    const span = scale.max - scale.min;
+    const step = span > 6 * kHourMs ? kHourMs : span > 2 * kHourMs ? kHourMs / 2 : kHourMs / 6;
     const all = [];
-    for (let t = Math.ceil(scale.min / kHourMs) * kHourMs; t <= scale.max; t += kHourMs) {
-      if (Number(clock(t).slice(0, 2)) % 3 === 0) all.push({value: t});
+    for (let t = Math.ceil(scale.min / step) * step; t <= scale.max; t += step) {
+      if (step < kHourMs || Number(clock(t).slice(0, 2)) % 3 === 0) all.push({value: t});
     }
     scale.ticks = all;
   };
@@ -287,9 +294,10 @@ function drawMap({columns}) {
   if (columns.length === 0) return "No student decision in this control cycle.";
   const last = state.last;
   const now = {x: last.has_measurement ? last.soc_e4 / 100 : NaN,
-               y: last.price_centi_eur_per_mwh / 100};
+               y: isPriced(last.reason) ? last.price_centi_eur_per_mwh / 100 : NaN};
   const points = (key) => columns.map((column) => ({x: column.soc_percent, y: column[key]}));
-  const prices = [now.y, ...points("charge_up_to_eur_per_mwh").map(({y}) => y),
+  const prices = [...(Number.isNaN(now.y) ? [] : [now.y]),
+                  ...points("charge_up_to_eur_per_mwh").map(({y}) => y),
                   ...points("discharge_from_eur_per_mwh").map(({y}) => y)];
   const min = 50 * Math.floor(Math.min(...prices) / 50 - 1);
   const max = 50 * Math.ceil(Math.max(...prices) / 50 + 1);

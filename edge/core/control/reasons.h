@@ -85,7 +85,7 @@ namespace bess {
   ROW(kNoPrice, 6, "no_price", kRests, "no price yet",                                             \
       "check network and `[price] url`: `bess-prices --check`",                                    \
       "until a price is at most {price_age_s_max} s old")                                          \
-  ROW(kPriceAge, 7, "price_age", kRests, "the newest price is older than `price_age_s_max`",       \
+  ROW(kPriceAge, 7, "price_age", kRests, "the newest price is too old (`price_age_s_max`)",        \
       "check network and `[price] url`: `bess-prices --check`",                                    \
       "until a price is at most {price_age_s_max} s old")                                          \
   ROW(kPriceQuarterHour, 8, "price_qh", kRests,                                                    \

@@ -84,7 +84,7 @@ class TearSheet {
       [exported, ...this.rivals(1)].map((policy) => [policy.name, this.drawdowns(policy)]);
     const anyFalls = falls.some(([, values]) => Math.min(...values) < 0);
     document.getElementById("drawdown-none").hidden = anyFalls;
-    document.getElementById("chart-drawdown").parentElement.hidden = !anyFalls;
+    document.getElementById("chart-drawdown").closest("figure").hidden = !anyFalls;
     if (anyFalls) this.drawBars("chart-drawdown", this.data.dates, falls, "", kSumUnit, {max: 0});
   }
 

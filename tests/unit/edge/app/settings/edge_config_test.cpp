@@ -287,15 +287,17 @@ TEST_F(ConfigFile, KeysThatAreNoLongerSettingsAreTakenAndNamed) {
   std::string text = valid_text();
   text.insert(text.find("[guard]") + 7, "\nhold_s = 10\norder_deadline_s = 5");
   text.insert(text.find("[price]") + 7, "\ntimeout_ms = 70\nresolve_every_s = 30");
-  text += "\n[outlook]\nask_spread_s = 0\n[state]\nlock_folder = \"x\"\n";
+  text +=
+      "\n[outlook]\nask_spread_s = 0\n[state]\nlock_folder = \"x\"\n"
+      "[notify]\nmail_to = \"me@example.org\"\n";
   load_good(text);
   EXPECT_EQ(config_->control.hold_s, 300);
   EXPECT_EQ(config_->price.feed.http.timeout_ms, 5'000);
   std::vector<std::string> named;
   for (const RetiredKey& old : config_->retired) named.emplace_back(old.key);
-  EXPECT_THAT(named,
-              testing::UnorderedElementsAre("hold_s", "order_deadline_s", "timeout_ms",
-                                            "resolve_every_s", "ask_spread_s", "lock_folder"));
+  EXPECT_THAT(named, testing::UnorderedElementsAre("hold_s", "order_deadline_s", "timeout_ms",
+                                                   "resolve_every_s", "ask_spread_s", "lock_folder",
+                                                   "mail_to"));
   EXPECT_THAT(keys_without_effect(*config_), testing::Contains(Names("[outlook] ask_spread_s")));
   // It is not suggested for a misspelt key.
   text.replace(text.find("timeout_ms"), 10, "timeoutms ");

@@ -111,6 +111,20 @@ TEST(NotifySettings, APasswordIsTheFirstLineOfItsFile) {
   }
 }
 
+/// A notifier of an earlier version's configuration still starts.
+TEST(NotifySettings, KeysThatWereRemovedAreTaken) {
+  const TemporaryFolder folder;
+  NotifySettings settings;
+  std::string error;
+  EXPECT_TRUE(load_notify_settings(
+      folder.write("edge.toml",
+                   "[notify]\nnode = \"house\"\nmail_to = \"me@example.org\"\n"
+                   "webhook_url = \"https://example.org\"\ncommand = \"true\"\n"),
+      settings, error))
+      << error;
+  EXPECT_EQ(settings.command, "true");
+}
+
 TEST(NotifySettings, EveryMistakeIsOneClearLine) {
   const TemporaryFolder folder;
   write_secret(folder, "password", "x\n");
