@@ -5,6 +5,9 @@
 folder=${1:?the folder is missing: without it the stand-ins would go into /bin}
 script=$(cd "$(dirname "$0")/../../../../.." && pwd)/edge/delivery/package/bess-probation
 failures=0
+[ ! -e "$folder" ] || [ -x "$folder/bin/systemctl" ] || {
+  echo "$folder exists and is not of this test"; exit 2
+}
 rm -rf "$folder"
 mkdir -p "$folder/bin"
 fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
