@@ -100,6 +100,7 @@ tick() {  # two minutes of the running version
     link) row=safe,t,ok,timeout,0 ;;
     *) row=running,t,ok,ok,1 ;;
   esac
+  [ "$how" != late ] || [ "$(cat cycle)" -lt 3 ] || echo failed >active
   echo "2023-01-01T00:$minute:00Z,$(cat cycle),$row" >>log.csv
 }
 deliver() {  # deliver VERSION [SPOIL BEFORE SUMS] [SPOIL AFTER]: what dpkg unpacks
@@ -135,7 +136,7 @@ grep -q '^stop\|^restart bess-edge' systemctl && fail "a working version is stop
 [ -d "$store/versions/1.0" ] || fail "the version before is not kept"
 upgrade 3.0; judge; expect "and the next one" confirmed 3.0
 
-for does in crash hang silent price trip link; do
+for does in crash hang silent price trip link late; do
   machine; echo $does >does_2.0
   upgrade 2.0; judge 60; expect "a version that $does" rolled_back 1.0
   grep -q '^stop bess-edge' systemctl || fail "$does: the version that fails is not stopped"
