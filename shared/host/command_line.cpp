@@ -113,63 +113,6 @@ CLI::Validator number_rule(std::function<bool(double)> holds, const std::string&
   return CLI::Validator(complaint, shown);
 }
 
-}  // namespace
-
-ProgramOption& ProgramOption::required() {
-  option_->required();
-  return *this;
-}
-ProgramOption& ProgramOption::with_default() {
-  option_->capture_default_str();
-  return *this;
-}
-ProgramOption& ProgramOption::checked(const CLI::Validator& rule) {
-  option_->check(rule);
-  return *this;
-}
-ProgramOption& ProgramOption::range(int low, int high) { return checked(CLI::Range(low, high)); }
-ProgramOption& ProgramOption::range(double low, double high) {
-  const std::string rule = formatted("%g to %g", low, high);
-  return checked(
-      number_rule([=](double x) { return x >= low && x <= high; }, rule, "[" + rule + "]"));
-}
-ProgramOption& ProgramOption::positive() {
-  return checked(number_rule([](double x) { return x > 0; }, "above 0", "POSITIVE"));
-}
-ProgramOption& ProgramOption::non_negative() {
-  return checked(number_rule([](double x) { return x >= 0; }, "0 or more", "NONNEGATIVE"));
-}
-ProgramOption& ProgramOption::one_of(const std::vector<std::string>& names) {
-  return checked(CLI::IsMember(names));
-}
-ProgramOption& ProgramOption::ipv4() { return checked(CLI::ValidIPV4); }
-ProgramOption& ProgramOption::check(
-    const std::function<std::string(const std::string&)>& complaint) {
-  return checked(CLI::Validator(complaint, ""));
-}
-ProgramOption& ProgramOption::value_name(const std::string& name) {
-  option_->type_name(name);
-  return *this;
-}
-ProgramOption& ProgramOption::excludes(const std::string& other) {
-  option_->excludes(other);
-  return *this;
-}
-ProgramOption& ProgramOption::needs(const std::string& other) {
-  option_->needs(other);
-  return *this;
-}
-
-ProgramCommand ProgramCommand::subcommand(const std::string& name, const std::string& description) {
-  return ProgramCommand(app_->add_subcommand(name, description));
-}
-void ProgramCommand::group(const std::string& heading, const std::vector<std::string>& names) {
-  for (const std::string& name : names) app_->get_subcommand(name)->group(heading);
-}
-void ProgramCommand::requires_subcommand() { app_->require_subcommand(1); }
-
-namespace {
-
 /// An empty value comes from "$UNSET"; CLI11 reads it as 0, or as a missing option.
 std::string refuse_empty(const std::string& given) {
   return given.empty() ? "needs a value, not empty text" : "";
@@ -224,7 +167,70 @@ struct ValueOf<std::optional<T>> {
   using type = T;
 };
 
+/// Refuses options of the root that the subcommand would ignore.
+void refuse_options_of_root(const CLI::App& root, const CLI::App& subcommand) {
+  const std::vector<std::string> known = option_names(subcommand);
+  for (const CLI::Option* option : root.get_options()) {
+    const std::string name = option->get_name();
+    if (option->count() == 0 || std::ranges::find(known, name) != known.end()) continue;
+    throw CLI::ParseError(name + " cannot be used with " + subcommand.get_name(), 2);
+  }
+}
+
 }  // namespace
+
+ProgramOption& ProgramOption::required() {
+  option_->required();
+  return *this;
+}
+ProgramOption& ProgramOption::with_default() {
+  option_->capture_default_str();
+  return *this;
+}
+ProgramOption& ProgramOption::checked(const CLI::Validator& rule) {
+  option_->check(rule);
+  return *this;
+}
+ProgramOption& ProgramOption::range(int low, int high) { return checked(CLI::Range(low, high)); }
+ProgramOption& ProgramOption::range(double low, double high) {
+  const std::string rule = formatted("%g to %g", low, high);
+  return checked(
+      number_rule([=](double x) { return x >= low && x <= high; }, rule, "[" + rule + "]"));
+}
+ProgramOption& ProgramOption::positive() {
+  return checked(number_rule([](double x) { return x > 0; }, "above 0", "POSITIVE"));
+}
+ProgramOption& ProgramOption::non_negative() {
+  return checked(number_rule([](double x) { return x >= 0; }, "0 or more", "NONNEGATIVE"));
+}
+ProgramOption& ProgramOption::one_of(const std::vector<std::string>& names) {
+  return checked(CLI::IsMember(names));
+}
+ProgramOption& ProgramOption::ipv4() { return checked(CLI::ValidIPV4); }
+ProgramOption& ProgramOption::check(
+    const std::function<std::string(const std::string&)>& complaint) {
+  return checked(CLI::Validator(complaint, ""));
+}
+ProgramOption& ProgramOption::value_name(const std::string& name) {
+  option_->type_name(name);
+  return *this;
+}
+ProgramOption& ProgramOption::excludes(const std::string& other) {
+  option_->excludes(other);
+  return *this;
+}
+ProgramOption& ProgramOption::needs(const std::string& other) {
+  option_->needs(other);
+  return *this;
+}
+
+ProgramCommand ProgramCommand::subcommand(const std::string& name, const std::string& description) {
+  return ProgramCommand(app_->add_subcommand(name, description));
+}
+void ProgramCommand::group(const std::string& heading, const std::vector<std::string>& names) {
+  for (const std::string& name : names) app_->get_subcommand(name)->group(heading);
+}
+void ProgramCommand::requires_subcommand() { app_->require_subcommand(1); }
 
 template <typename T>
 ProgramOption ProgramCommand::option(const std::string& name, T& value, const std::string& help) {
@@ -283,20 +289,6 @@ ProgramOption ProgramCommand::named_choice(const std::string& name,
 }
 
 void ProgramCommand::footer(const std::string& text) { app_->footer(text); }
-
-namespace {
-
-/// Refuses options of the root that the subcommand would ignore.
-void refuse_options_of_root(const CLI::App& root, const CLI::App& subcommand) {
-  const std::vector<std::string> known = option_names(subcommand);
-  for (const CLI::Option* option : root.get_options()) {
-    const std::string name = option->get_name();
-    if (option->count() == 0 || std::ranges::find(known, name) != known.end()) continue;
-    throw CLI::ParseError(name + " cannot be used with " + subcommand.get_name(), 2);
-  }
-}
-
-}  // namespace
 
 void ProgramCommand::runs(std::function<void()> action, std::function<std::string()> complaint) {
   if (app_->get_parent() == nullptr) {

@@ -193,6 +193,32 @@ ChargeScale balanced(ChargeScale scale, std::span<const ExchangeSample> samples)
   return scale;
 }
 
+constexpr std::int64_t start_of(std::int64_t utc_s) {
+  return utc_s / kSecondsPerQuarterHour * kSecondsPerQuarterHour;
+}
+
+/// Of the energy of one quarter-hour.
+QuarterHourMoney money_of(const ExchangedDay& flow, const std::optional<SettledQuarter>& price,
+                          const BatteryParameters& terms) {
+  QuarterHourMoney money{.quarter_hours = 1};
+  if (!price) {
+    money.unpriced = 1;
+    return money;
+  }
+  const double charged_mwh = flow.charged_wh / kWattsPerMegawatt;
+  const double discharged_mwh = flow.discharged_wh / kWattsPerMegawatt;
+  money.published = price->state != PriceState::kIndicative ? 1 : 0;
+  money.validated = price->state == PriceState::kValidated ? 1 : 0;
+  money.prices_eur_per_mwh = price->eur_per_mwh;
+  // Subtraction prevents -0 on a day without exchange.
+  money.earned_eur = 0.0 - (charged_mwh - discharged_mwh) * price->eur_per_mwh;
+  if (money.published == 0) money.estimated_eur = money.earned_eur;
+  money.contract_eur = exchange_cost_eur(terms, charged_mwh, price->eur_per_mwh) +
+                       exchange_cost_eur(terms, -discharged_mwh, price->eur_per_mwh) +
+                       money.earned_eur;
+  return money;
+}
+
 }  // namespace
 
 void ExchangeSample::set_written(std::int64_t price_minute_utc_s, std::int32_t price_age_s) {
@@ -250,14 +276,6 @@ void for_each_exchange(std::span<const ExchangeSample> samples,
   integrate_along(samples, scale, visit);
 }
 
-namespace {
-
-constexpr std::int64_t start_of(std::int64_t utc_s) {
-  return utc_s / kSecondsPerQuarterHour * kSecondsPerQuarterHour;
-}
-
-}  // namespace
-
 QuarterPrices::QuarterPrices(std::span<const SettledQuarter> settled) {
   for (const SettledQuarter& quarter : settled) prices_[quarter.start_utc_s].quarter = quarter;
 }
@@ -277,32 +295,6 @@ std::optional<SettledQuarter> QuarterPrices::find(std::int64_t utc_s) const {
   const auto found = prices_.find(start_of(utc_s));
   return found == prices_.end() ? std::nullopt : std::optional(found->second.quarter);
 }
-
-namespace {
-
-/// Of the energy of one quarter-hour.
-QuarterHourMoney money_of(const ExchangedDay& flow, const std::optional<SettledQuarter>& price,
-                          const BatteryParameters& terms) {
-  QuarterHourMoney money{.quarter_hours = 1};
-  if (!price) {
-    money.unpriced = 1;
-    return money;
-  }
-  const double charged_mwh = flow.charged_wh / kWattsPerMegawatt;
-  const double discharged_mwh = flow.discharged_wh / kWattsPerMegawatt;
-  money.published = price->state != PriceState::kIndicative ? 1 : 0;
-  money.validated = price->state == PriceState::kValidated ? 1 : 0;
-  money.prices_eur_per_mwh = price->eur_per_mwh;
-  // Subtraction prevents -0 on a day without exchange.
-  money.earned_eur = 0.0 - (charged_mwh - discharged_mwh) * price->eur_per_mwh;
-  if (money.published == 0) money.estimated_eur = money.earned_eur;
-  money.contract_eur = exchange_cost_eur(terms, charged_mwh, price->eur_per_mwh) +
-                       exchange_cost_eur(terms, -discharged_mwh, price->eur_per_mwh) +
-                       money.earned_eur;
-  return money;
-}
-
-}  // namespace
 
 double QuarterHourMoney::mean_price_eur_per_mwh() const {
   const int priced = quarter_hours - unpriced;

@@ -47,70 +47,6 @@ struct Slot {
 std::array<Slot, 16> slots;  // more than the usual number of writing threads
 std::atomic<bool> is_ending{false};
 
-}  // namespace
-
-void require_distinct(const std::vector<NamedPath>& outputs, const std::vector<NamedPath>& inputs) {
-  for (auto output = outputs.begin(); output != outputs.end(); ++output) {
-    for (const NamedPath& input : inputs) {
-      if (!is_same_file(output->path, input.path)) continue;
-      fail("{} {}: would replace the input {} {}; use another name", output->option,
-           output->path.string(), input.option, input.path.string());
-    }
-    for (auto other = outputs.begin(); other != output; ++other) {
-      if (!is_same_file(output->path, other->path)) continue;
-      fail("{} {}: would replace the output of {}; use different names", output->option,
-           output->path.string(), other->option);
-    }
-  }
-}
-
-std::vector<NamedPath> named_paths(const std::string& option, const std::vector<std::string>& paths,
-                                   const std::vector<NamedPath>& others) {
-  std::vector<NamedPath> named = named_files(option, {}, paths);
-  named.insert(named.end(), others.begin(), others.end());
-  return named;
-}
-
-std::vector<NamedPath> named_files(const std::string& option, const std::filesystem::path& folder,
-                                   const std::vector<std::string>& names) {
-  std::vector<NamedPath> named;
-  for (const std::string& name : names) named.push_back({option, folder / name});
-  return named;
-}
-
-UnfinishedFile::UnfinishedFile(const std::string& path) : path_(path) {
-  if (path.empty() || path.size() >= PATH_MAX) return;
-  for (std::size_t i = 0; i < slots.size(); ++i) {
-    if (slots[i].is_taken.exchange(true)) continue;
-    std::memcpy(slots[i].path, path.c_str(), path.size() + 1);
-    slots[i].is_named = true;
-    slot_ = static_cast<int>(i);
-    return;
-  }
-}
-
-UnfinishedFile::~UnfinishedFile() {
-  if (slot_ < 0) return;
-  Slot& slot = slots[static_cast<std::size_t>(slot_)];
-  slot.is_named = false;
-  slot.is_taken = false;
-}
-
-void UnfinishedFile::made() const {
-  if (!is_ending) return;
-  unlink(path_.c_str());
-  for (;;) pause();
-}
-
-void remove_unfinished_files() {
-  is_ending = true;
-  for (const Slot& slot : slots) {
-    if (slot.is_named) unlink(slot.path);
-  }
-}
-
-namespace {
-
 /// Opens for reading. Waits for the writer of a pipe, but not forever.
 int open_to_read(const fs::path& path) {
   const int fd = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
@@ -354,6 +290,66 @@ bool is_web_page(std::string_view text) {
 }
 
 }  // namespace
+
+void require_distinct(const std::vector<NamedPath>& outputs, const std::vector<NamedPath>& inputs) {
+  for (auto output = outputs.begin(); output != outputs.end(); ++output) {
+    for (const NamedPath& input : inputs) {
+      if (!is_same_file(output->path, input.path)) continue;
+      fail("{} {}: would replace the input {} {}; use another name", output->option,
+           output->path.string(), input.option, input.path.string());
+    }
+    for (auto other = outputs.begin(); other != output; ++other) {
+      if (!is_same_file(output->path, other->path)) continue;
+      fail("{} {}: would replace the output of {}; use different names", output->option,
+           output->path.string(), other->option);
+    }
+  }
+}
+
+std::vector<NamedPath> named_paths(const std::string& option, const std::vector<std::string>& paths,
+                                   const std::vector<NamedPath>& others) {
+  std::vector<NamedPath> named = named_files(option, {}, paths);
+  named.insert(named.end(), others.begin(), others.end());
+  return named;
+}
+
+std::vector<NamedPath> named_files(const std::string& option, const std::filesystem::path& folder,
+                                   const std::vector<std::string>& names) {
+  std::vector<NamedPath> named;
+  for (const std::string& name : names) named.push_back({option, folder / name});
+  return named;
+}
+
+UnfinishedFile::UnfinishedFile(const std::string& path) : path_(path) {
+  if (path.empty() || path.size() >= PATH_MAX) return;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (slots[i].is_taken.exchange(true)) continue;
+    std::memcpy(slots[i].path, path.c_str(), path.size() + 1);
+    slots[i].is_named = true;
+    slot_ = static_cast<int>(i);
+    return;
+  }
+}
+
+UnfinishedFile::~UnfinishedFile() {
+  if (slot_ < 0) return;
+  Slot& slot = slots[static_cast<std::size_t>(slot_)];
+  slot.is_named = false;
+  slot.is_taken = false;
+}
+
+void UnfinishedFile::made() const {
+  if (!is_ending) return;
+  unlink(path_.c_str());
+  for (;;) pause();
+}
+
+void remove_unfinished_files() {
+  is_ending = true;
+  for (const Slot& slot : slots) {
+    if (slot.is_named) unlink(slot.path);
+  }
+}
 
 bool is_special_file(const fs::path& path) {
   std::error_code error;

@@ -100,53 +100,6 @@ HttpOutcome handshake_trouble(const std::string& detail, const std::string& auth
       "port");
 }
 
-}  // namespace
-
-HttpOutcome transfer_trouble(void* curl, int code, const std::string& detail,
-                             const std::string& authorities) {
-  const std::string words = one_line(
-      detail.empty() ? curl_easy_strerror(static_cast<CURLcode>(code)) : detail, kDetailMax);
-  switch (code) {
-    case CURLE_COULDNT_RESOLVE_HOST:
-    case CURLE_COULDNT_RESOLVE_PROXY:
-      return failure(Kind::kUnreachable, "unknown host name: check the name and the resolver");
-    case CURLE_COULDNT_CONNECT:
-      return failure(Kind::kUnreachable, connect_trouble(curl));
-    case CURLE_SSL_CONNECT_ERROR:
-      return handshake_trouble(detail, authorities);
-    case CURLE_PEER_FAILED_VERIFICATION:
-      return failure(Kind::kRefused, certificate_trouble(curl, authorities));
-    case CURLE_SSL_CACERT_BADFILE:
-      return failure(Kind::kRefused,
-                     "the certificates of authorities cannot be read: " + authorities);
-    case CURLE_GOT_NOTHING:  // typical for TLS servers without TLS in the request
-      return failure(
-          Kind::kTransient,
-          "the server closed the connection without an answer: check the port, and http:// or "
-          "https://");
-    case CURLE_OPERATION_TIMEDOUT:
-      return failure(Kind::kTransient, "no answer in time: check the host and firewalls");
-    case CURLE_PARTIAL_FILE:
-    case CURLE_RECV_ERROR:
-    case CURLE_SEND_ERROR:
-    case CURLE_HTTP2:
-    case CURLE_HTTP2_STREAM:
-    case CURLE_BAD_CONTENT_ENCODING:
-      return failure(Kind::kTransient, words);
-    case CURLE_ABORTED_BY_CALLBACK:
-      return failure(Kind::kInterrupted, words);
-    case CURLE_UNSUPPORTED_PROTOCOL:
-      if (has(detail, "HTTP/0.9")) {
-        return failure(Kind::kRefused, "the answer is not HTTP: use https:// instead of http://?");
-      }
-      return failure(Kind::kRefused, words);
-    default:
-      return failure(Kind::kRefused, words);
-  }
-}
-
-namespace {
-
 constexpr double kConnectTimeout_s = 20;
 constexpr std::size_t kReasonMax = 200;  // of a server message
 constexpr std::size_t kHeaderBytesMax = 100'000;
@@ -524,6 +477,49 @@ Handle new_handle() {
 }
 
 }  // namespace
+
+HttpOutcome transfer_trouble(void* curl, int code, const std::string& detail,
+                             const std::string& authorities) {
+  const std::string words = one_line(
+      detail.empty() ? curl_easy_strerror(static_cast<CURLcode>(code)) : detail, kDetailMax);
+  switch (code) {
+    case CURLE_COULDNT_RESOLVE_HOST:
+    case CURLE_COULDNT_RESOLVE_PROXY:
+      return failure(Kind::kUnreachable, "unknown host name: check the name and the resolver");
+    case CURLE_COULDNT_CONNECT:
+      return failure(Kind::kUnreachable, connect_trouble(curl));
+    case CURLE_SSL_CONNECT_ERROR:
+      return handshake_trouble(detail, authorities);
+    case CURLE_PEER_FAILED_VERIFICATION:
+      return failure(Kind::kRefused, certificate_trouble(curl, authorities));
+    case CURLE_SSL_CACERT_BADFILE:
+      return failure(Kind::kRefused,
+                     "the certificates of authorities cannot be read: " + authorities);
+    case CURLE_GOT_NOTHING:  // typical for TLS servers without TLS in the request
+      return failure(
+          Kind::kTransient,
+          "the server closed the connection without an answer: check the port, and http:// or "
+          "https://");
+    case CURLE_OPERATION_TIMEDOUT:
+      return failure(Kind::kTransient, "no answer in time: check the host and firewalls");
+    case CURLE_PARTIAL_FILE:
+    case CURLE_RECV_ERROR:
+    case CURLE_SEND_ERROR:
+    case CURLE_HTTP2:
+    case CURLE_HTTP2_STREAM:
+    case CURLE_BAD_CONTENT_ENCODING:
+      return failure(Kind::kTransient, words);
+    case CURLE_ABORTED_BY_CALLBACK:
+      return failure(Kind::kInterrupted, words);
+    case CURLE_UNSUPPORTED_PROTOCOL:
+      if (has(detail, "HTTP/0.9")) {
+        return failure(Kind::kRefused, "the answer is not HTTP: use https:// instead of http://?");
+      }
+      return failure(Kind::kRefused, words);
+    default:
+      return failure(Kind::kRefused, words);
+  }
+}
 
 HttpOutcome http_request(const HttpRequest& request, const StopRequested& stop_requested) {
   const auto budget = std::chrono::duration_cast<Clock::duration>(

@@ -41,6 +41,46 @@ std::string taken(char* printed) {
   return text;
 }
 
+/// Replaces NaN and Infinity by null, outside of text.
+std::string without_nan(std::string_view json) {
+  std::string text;
+  bool is_inside = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const std::string_view rest = json.substr(i);
+    if (is_inside && json[i] == '\\') {
+      text += rest.substr(0, 2);
+      ++i;
+      continue;
+    }
+    is_inside = is_inside != (json[i] == '"');
+    const std::string_view words[] = {"NaN", "-Infinity", "Infinity"};
+    const auto* const word =
+        std::ranges::find_if(words, [&](std::string_view w) { return rest.starts_with(w); });
+    if (is_inside || word == std::end(words)) {
+      text += json[i];
+      continue;
+    }
+    text += "null";
+    i += word->size() - 1;
+  }
+  return text;
+}
+
+constexpr double kFirstMilliseconds = 1e11;  // in seconds: year 5138
+constexpr double kLastMilliseconds = 1e14;
+
+/// cJSON keeps duplicate members and returns the first.
+JsonValue only_member(JsonValue object, std::string_view name) {
+  JsonValue found;
+  if (!object.is_object()) return found;
+  for (const JsonValue member : object) {
+    if (member.key() != name) continue;
+    if (found.exists()) return JsonValue();
+    found = member;
+  }
+  return found;
+}
+
 }  // namespace
 
 bool JsonValue::is_null() const { return cJSON_IsNull(item_) != 0; }
@@ -97,35 +137,6 @@ Json Json::parse(std::string_view text) {
   return json;
 }
 
-namespace {
-
-/// Replaces NaN and Infinity by null, outside of text.
-std::string without_nan(std::string_view json) {
-  std::string text;
-  bool is_inside = false;
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    const std::string_view rest = json.substr(i);
-    if (is_inside && json[i] == '\\') {
-      text += rest.substr(0, 2);
-      ++i;
-      continue;
-    }
-    is_inside = is_inside != (json[i] == '"');
-    const std::string_view words[] = {"NaN", "-Infinity", "Infinity"};
-    const auto* const word =
-        std::ranges::find_if(words, [&](std::string_view w) { return rest.starts_with(w); });
-    if (is_inside || word == std::end(words)) {
-      text += json[i];
-      continue;
-    }
-    text += "null";
-    i += word->size() - 1;
-  }
-  return text;
-}
-
-}  // namespace
-
 Json parse_answer(std::string_view text) {
   Json json = Json::parse(text);
   const bool has_words = text.find("NaN") != text.npos || text.find("Infinity") != text.npos;
@@ -160,25 +171,6 @@ void Json::add(Json value) {
 
 std::string Json::line() const { return taken(cJSON_PrintUnformatted(item_.get())); }
 std::string Json::text() const { return taken(cJSON_Print(item_.get())) + "\n"; }
-
-namespace {
-
-constexpr double kFirstMilliseconds = 1e11;  // in seconds: year 5138
-constexpr double kLastMilliseconds = 1e14;
-
-/// cJSON keeps duplicate members and returns the first.
-JsonValue only_member(JsonValue object, std::string_view name) {
-  JsonValue found;
-  if (!object.is_object()) return found;
-  for (const JsonValue member : object) {
-    if (member.key() != name) continue;
-    if (found.exists()) return JsonValue();
-    found = member;
-  }
-  return found;
-}
-
-}  // namespace
 
 JsonValue value_at(JsonValue object, std::string_view path) {
   while (object.exists() && !path.empty()) {

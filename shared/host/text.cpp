@@ -29,6 +29,35 @@ std::size_t distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
+/// The C0 characters and DEL, and in UTF-8 the C1 ones: a terminal reads U+009B as ESC [.
+bool is_control(std::string_view text, std::size_t at) {
+  const auto c = static_cast<unsigned char>(text[at]);
+  const auto next = static_cast<unsigned char>(at + 1 < text.size() ? text[at + 1] : 0);
+  return c < 0x20 || c == 0x7F || (c == 0xC2 && next >= 0x80 && next < 0xA0);
+}
+
+/// Never cuts a multi-byte character.
+std::string_view cut(std::string_view text, std::size_t size_max) {
+  if (text.size() <= size_max) return text;
+  const auto continues = [&text](std::size_t at) {
+    return (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80;
+  };
+  while (size_max > 0 && continues(size_max)) --size_max;
+  return text.substr(0, size_max);
+}
+
+void add_formatted_list(std::string& text, const char* format, std::va_list arguments) {
+  std::va_list again;
+  va_copy(again, arguments);
+  const int size = std::vsnprintf(nullptr, 0, format, arguments);
+  if (size > 0) {
+    const std::size_t before = text.size();
+    text.resize(before + static_cast<std::size_t>(size));
+    std::vsnprintf(text.data() + before, static_cast<std::size_t>(size) + 1, format, again);
+  }
+  va_end(again);
+}
+
 }  // namespace
 
 std::string nearest_word(std::string_view given, const std::vector<std::string>& known) {
@@ -80,39 +109,6 @@ std::string with_true_minus(std::string_view text) {
   }
   return out;
 }
-
-namespace {
-
-/// The C0 characters and DEL, and in UTF-8 the C1 ones: a terminal reads U+009B as ESC [.
-bool is_control(std::string_view text, std::size_t at) {
-  const auto c = static_cast<unsigned char>(text[at]);
-  const auto next = static_cast<unsigned char>(at + 1 < text.size() ? text[at + 1] : 0);
-  return c < 0x20 || c == 0x7F || (c == 0xC2 && next >= 0x80 && next < 0xA0);
-}
-
-/// Never cuts a multi-byte character.
-std::string_view cut(std::string_view text, std::size_t size_max) {
-  if (text.size() <= size_max) return text;
-  const auto continues = [&text](std::size_t at) {
-    return (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80;
-  };
-  while (size_max > 0 && continues(size_max)) --size_max;
-  return text.substr(0, size_max);
-}
-
-void add_formatted_list(std::string& text, const char* format, std::va_list arguments) {
-  std::va_list again;
-  va_copy(again, arguments);
-  const int size = std::vsnprintf(nullptr, 0, format, arguments);
-  if (size > 0) {
-    const std::size_t before = text.size();
-    text.resize(before + static_cast<std::size_t>(size));
-    std::vsnprintf(text.data() + before, static_cast<std::size_t>(size) + 1, format, again);
-  }
-  va_end(again);
-}
-
-}  // namespace
 
 bool holds_control(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {

@@ -28,6 +28,30 @@ constexpr SplitMeaning kMeanings[] = {
 
 const SplitMeaning& meaning_of(Split split) { return kMeanings[static_cast<std::size_t>(split)]; }
 
+/// On one fold every traded day is a test day.
+const char* local_days_of(const JudgedDays& judged) {
+  const bool is_fold = judged.split == Split::kTest &&
+                       std::ranges::any_of(judged.dates, [](const std::string& date) {
+                         return date.substr(8) < "26";
+                       });
+  return is_fold ? "1 to the end" : meaning_of(judged.split).local_days;
+}
+
+constexpr std::string_view kHeader =
+    "policy,date,profit_eur,cycles,switches,throughput_mwh,carry_soc,soc_end_frac,"
+    "soc_start_frac,charge_value_eur,charge_price_eur_per_mwh";
+
+void add_days(std::string& text, const std::string& policy, bool carry_soc,
+              const Evaluation& evaluation) {
+  const std::string price =
+      evaluation.values_charge_left() ? fmt::format("{}", evaluation.charge_price_eur_per_mwh) : "";
+  for (const DayResult& d : evaluation.days) {
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", csv_field(policy), d.date,
+                        d.profit_eur, d.cycles, d.switches, d.throughput_mwh, truth(carry_soc),
+                        d.soc_end_frac, d.soc_start_frac, d.charge_value_eur, price);
+  }
+}
+
 }  // namespace
 
 std::size_t JudgedDays::before_last_learnt() const {
@@ -54,19 +78,6 @@ JudgedDays judged_days(const MarketSteps& market, Split split) {
   for (const MarketDay& day : market.days_of(split)) judged.dates.push_back(day.date());
   return judged;
 }
-
-namespace {
-
-/// On one fold every traded day is a test day.
-const char* local_days_of(const JudgedDays& judged) {
-  const bool is_fold = judged.split == Split::kTest &&
-                       std::ranges::any_of(judged.dates, [](const std::string& date) {
-                         return date.substr(8) < "26";
-                       });
-  return is_fold ? "1 to the end" : meaning_of(judged.split).local_days;
-}
-
-}  // namespace
 
 std::string judged_days_text(const JudgedDays& judged) {
   const SplitMeaning& meaning = meaning_of(judged.split);
@@ -99,25 +110,6 @@ Json judged_days_json(const JudgedDays& judged) {
                        {"days_before_last_learnt",
                         value_or_null(!judged.last_learnt.empty(), judged.before_last_learnt())}});
 }
-
-namespace {
-
-constexpr std::string_view kHeader =
-    "policy,date,profit_eur,cycles,switches,throughput_mwh,carry_soc,soc_end_frac,"
-    "soc_start_frac,charge_value_eur,charge_price_eur_per_mwh";
-
-void add_days(std::string& text, const std::string& policy, bool carry_soc,
-              const Evaluation& evaluation) {
-  const std::string price =
-      evaluation.values_charge_left() ? fmt::format("{}", evaluation.charge_price_eur_per_mwh) : "";
-  for (const DayResult& d : evaluation.days) {
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", csv_field(policy), d.date,
-                        d.profit_eur, d.cycles, d.switches, d.throughput_mwh, truth(carry_soc),
-                        d.soc_end_frac, d.soc_start_frac, d.charge_value_eur, price);
-  }
-}
-
-}  // namespace
 
 std::string evaluation_days_csv(const std::vector<NamedEvaluation>& evaluations) {
   std::string text = fmt::format("{}\n", kHeader);

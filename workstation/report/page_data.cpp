@@ -163,22 +163,6 @@ PictureTable map_table(const RunResults& in) {
   return table;
 }
 
-}  // namespace
-
-std::vector<PictureTable> page_pictures(const RunResults& in, const PageSteps& steps) {
-  return {step_table(in, steps), map_table(in), histogram_table(price_histogram(in.market))};
-}
-
-std::string teacher_name(const Teacher& teacher) {
-  return fmt::format("{} teacher", method_name(teacher.method));
-}
-
-const char* own_student_name(const Certificate& certificate) {
-  return certificate.violations() == 0 ? kCorrectedName : kUnprovedName;
-}
-
-namespace {
-
 constexpr double kWattHoursPerMegawattHour = 1e6;
 constexpr std::size_t kCounterexamplesShown = 200;
 
@@ -378,6 +362,18 @@ Json thresholds_json(const PriceThresholds& thresholds) {
 }
 
 }  // namespace
+
+std::vector<PictureTable> page_pictures(const RunResults& in, const PageSteps& steps) {
+  return {step_table(in, steps), map_table(in), histogram_table(price_histogram(in.market))};
+}
+
+std::string teacher_name(const Teacher& teacher) {
+  return fmt::format("{} teacher", method_name(teacher.method));
+}
+
+const char* own_student_name(const Certificate& certificate) {
+  return certificate.violations() == 0 ? kCorrectedName : kUnprovedName;
+}
 
 std::vector<std::size_t> days_with_steps(const std::vector<double>& profit_eur, std::size_t most) {
   std::vector<std::size_t> order(profit_eur.size());

@@ -31,6 +31,49 @@ std::string eur_per_day(const Evaluation& evaluation) {
                      evaluation.capacity_mwh < 1 ? 2 : 1);
 }
 
+std::string comparison_table(const std::string& caption, std::vector<ComparisonRow> rows) {
+  std::erase_if(rows, [](const ComparisonRow& row) { return is_under_rules(row.name); });
+  if (rows.empty()) return {};
+  return format_table(fmt::format("{}, {} days, EUR/day/MWh", caption, rows.front().days),
+                      figures_table(rows));
+}
+
+std::vector<std::string> proof_cells(const std::string& name, const Certificate& c) {
+  return {name, grouped(c.states_checked), grouped(c.violations_of(1)), grouped(c.violations_of(2)),
+          grouped(c.violations_of(3))};
+}
+
+std::string percent_broken(const DemandCount& count) {
+  if (!count.binds_student || count.states == 0) return kNoValue;
+  return fmt::format(
+      "{:.2f}", 100.0 * static_cast<double>(count.violations) / static_cast<double>(count.states));
+}
+
+/// "unproved student" at the head of a column.
+std::string capital(std::string text) {
+  text.front() = static_cast<char>(std::toupper(text.front()));
+  return text;
+}
+
+std::string rules_table(const Certificate& uncorrected, const Certificate& corrected,
+                        ContextKind kind) {
+  HtmlTable table{"Rules and their violations",
+                  {"Rule", "Enforced by", "States", "Plain student: violations, %",
+                   capital(own_student_name(corrected)) + ": violations"},
+                  {}};
+  const std::vector<DemandCount> after = demand_counts(corrected);
+  const std::vector<DemandCount> before = demand_counts(uncorrected);
+  for (std::size_t d = kPropertyCount; d < after.size(); ++d) {
+    const bool is_bound = after[d].binds_student;
+    table.rows.push_back({fmt::format("{} \u2013 {}", after[d].name, after[d].text),
+                          held_by(corrected.rules.rules[d - kPropertyCount], kind),
+                          is_bound ? grouped(after[d].states) : kNoValue,
+                          d < before.size() ? percent_broken(before[d]) : kNoValue,
+                          is_bound ? grouped(after[d].violations) : kNoValue});
+  }
+  return format_table(table);
+}
+
 }  // namespace
 
 std::string whole_battery_html(const std::vector<NamedEvaluation>& evaluations) {
@@ -81,53 +124,6 @@ std::string same_program_text(const std::vector<NamedEvaluation>& evaluations) {
       "step",
       program->name, kProgramAsTeacher);
 }
-
-namespace {
-
-std::string comparison_table(const std::string& caption, std::vector<ComparisonRow> rows) {
-  std::erase_if(rows, [](const ComparisonRow& row) { return is_under_rules(row.name); });
-  if (rows.empty()) return {};
-  return format_table(fmt::format("{}, {} days, EUR/day/MWh", caption, rows.front().days),
-                      figures_table(rows));
-}
-
-std::vector<std::string> proof_cells(const std::string& name, const Certificate& c) {
-  return {name, grouped(c.states_checked), grouped(c.violations_of(1)), grouped(c.violations_of(2)),
-          grouped(c.violations_of(3))};
-}
-
-std::string percent_broken(const DemandCount& count) {
-  if (!count.binds_student || count.states == 0) return kNoValue;
-  return fmt::format(
-      "{:.2f}", 100.0 * static_cast<double>(count.violations) / static_cast<double>(count.states));
-}
-
-/// "unproved student" at the head of a column.
-std::string capital(std::string text) {
-  text.front() = static_cast<char>(std::toupper(text.front()));
-  return text;
-}
-
-std::string rules_table(const Certificate& uncorrected, const Certificate& corrected,
-                        ContextKind kind) {
-  HtmlTable table{"Rules and their violations",
-                  {"Rule", "Enforced by", "States", "Plain student: violations, %",
-                   capital(own_student_name(corrected)) + ": violations"},
-                  {}};
-  const std::vector<DemandCount> after = demand_counts(corrected);
-  const std::vector<DemandCount> before = demand_counts(uncorrected);
-  for (std::size_t d = kPropertyCount; d < after.size(); ++d) {
-    const bool is_bound = after[d].binds_student;
-    table.rows.push_back({fmt::format("{} \u2013 {}", after[d].name, after[d].text),
-                          held_by(corrected.rules.rules[d - kPropertyCount], kind),
-                          is_bound ? grouped(after[d].states) : kNoValue,
-                          d < before.size() ? percent_broken(before[d]) : kNoValue,
-                          is_bound ? grouped(after[d].violations) : kNoValue});
-  }
-  return format_table(table);
-}
-
-}  // namespace
 
 std::string grouped(std::int64_t count) {
   const std::string digits = fmt::format("{}", count);

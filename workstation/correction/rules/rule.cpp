@@ -47,6 +47,20 @@ std::string box_text(const RuleBox& box) {
   return parts.empty() ? "always" : fmt::format("{}", fmt::join(parts, ", "));
 }
 
+Rule threshold(int property, Action action) {
+  return {.name = fmt::format("property {}", property),
+          .box = {},
+          .demand = action_demand(action_bit(action)),
+          .property = property};
+}
+
+Rule never_rises_with(RuleInput input, const char* name) {
+  return {.name = fmt::format("property 3, {}", name),
+          .box = {},
+          .demand = direction_demand({input, -1}),
+          .property = 3};
+}
+
 }  // namespace
 
 std::string hour_text(int quarter_hour) {
@@ -153,24 +167,6 @@ RuleSet with_outlook_rule(const RuleSet& rules) {
   }
   return all;
 }
-
-namespace {
-
-Rule threshold(int property, Action action) {
-  return {.name = fmt::format("property {}", property),
-          .box = {},
-          .demand = action_demand(action_bit(action)),
-          .property = property};
-}
-
-Rule never_rises_with(RuleInput input, const char* name) {
-  return {.name = fmt::format("property 3, {}", name),
-          .box = {},
-          .demand = direction_demand({input, -1}),
-          .property = 3};
-}
-
-}  // namespace
 
 RuleSet built_in_rules(const PriceThresholds& thresholds) {
   Rule cheap = threshold(1, Action::kCharge);

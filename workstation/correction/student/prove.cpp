@@ -83,6 +83,32 @@ std::string advice_of(const Certificate& certificate, ContextKind kind, const Ru
                      room_text(*opposite), opposite->name, kMoreEffort);
 }
 
+constexpr std::string_view kCounterexampleHeader =
+    "minute_of_quarter_hour,quarter_hour,context_class,soc_index,price_eur_per_mwh";
+
+/// With the certificate of a check by these options, for the student's thresholds and rules.
+StudentFile checked(StudentFile student, VerifyOptions options) {
+  check_net(student.net, "the student");
+  Certificate& certificate = student.certificate;
+  // A student by outlook owes the demand on its classes, whatever rules its file or a user names.
+  if (student.net.context.is_outlook()) certificate.rules = with_outlook_rule(certificate.rules);
+  options.thresholds = certificate.thresholds;
+  options.rules = certificate.rules;
+  certificate = verify_student(student.net, options);
+  return student;
+}
+
+constexpr std::string_view kRoundsHeader = "round,looked_at,demand,violations";
+constexpr std::string_view kLattice = "lattice";
+constexpr std::string_view kCorners = "corners";
+
+std::string minutes_text(double seconds) {
+  return seconds < 90 ? fmt::format("{:.0f} s", seconds) : fmt::format("{:.0f} min", seconds / 60);
+}
+
+constexpr std::string_view kCheckpointHeader = "round,epoch,validation_eur_per_day_per_mwh,state";
+constexpr std::array<std::string_view, 3> kStates{"passed over", "disobeys", "chosen"};
+
 }  // namespace
 
 std::string state_text(const LatticeState& s, ContextKind kind) {
@@ -131,13 +157,6 @@ std::string describe_failed_proof(const StudentFile& student, const std::vector<
   return text;
 }
 
-namespace {
-
-constexpr std::string_view kCounterexampleHeader =
-    "minute_of_quarter_hour,quarter_hour,context_class,soc_index,price_eur_per_mwh";
-
-}  // namespace
-
 std::string counterexamples_csv(const std::vector<LatticeState>& states) {
   std::string text = fmt::format("{}\n", kCounterexampleHeader);
   for (const LatticeState& s : states) {
@@ -166,22 +185,6 @@ std::vector<LatticeState> parse_counterexamples_csv(std::string_view text,
 
 static_assert(std::gcd(kSampleStride, kContextCount) == 1);
 
-namespace {
-
-/// With the certificate of a check by these options, for the student's thresholds and rules.
-StudentFile checked(StudentFile student, VerifyOptions options) {
-  check_net(student.net, "the student");
-  Certificate& certificate = student.certificate;
-  // A student by outlook owes the demand on its classes, whatever rules its file or a user names.
-  if (student.net.context.is_outlook()) certificate.rules = with_outlook_rule(certificate.rules);
-  options.thresholds = certificate.thresholds;
-  options.rules = certificate.rules;
-  certificate = verify_student(student.net, options);
-  return student;
-}
-
-}  // namespace
-
 Verdict prove(StudentFile student, int threads, bool exhaustive) {
   student = checked(std::move(student), {.exhaustive = exhaustive, .threads = threads});
   if (!student.certificate.covers_lattice_without_violation()) return student;
@@ -196,18 +199,6 @@ const StudentFile& student_of(const Verdict& verdict) {
   const auto* proved = std::get_if<ProvedStudent>(&verdict);
   return proved != nullptr ? proved->file() : std::get<StudentFile>(verdict);
 }
-
-namespace {
-
-constexpr std::string_view kRoundsHeader = "round,looked_at,demand,violations";
-constexpr std::string_view kLattice = "lattice";
-constexpr std::string_view kCorners = "corners";
-
-std::string minutes_text(double seconds) {
-  return seconds < 90 ? fmt::format("{:.0f} s", seconds) : fmt::format("{:.0f} min", seconds / 60);
-}
-
-}  // namespace
 
 std::int64_t ProofRound::violations() const {
   std::int64_t sum = 0;
@@ -272,13 +263,6 @@ std::vector<ProofRound> parse_proof_rounds_csv(std::string_view text, const std:
   }
   return rounds;
 }
-
-namespace {
-
-constexpr std::string_view kCheckpointHeader = "round,epoch,validation_eur_per_day_per_mwh,state";
-constexpr std::array<std::string_view, 3> kStates{"passed over", "disobeys", "chosen"};
-
-}  // namespace
 
 std::string_view checkpoint_state_name(CheckpointState state) {
   return kStates[static_cast<std::size_t>(state)];

@@ -112,48 +112,6 @@ std::vector<std::int64_t> activation_bound(const Affine<kInputs, kOutputs>& laye
   return bound;
 }
 
-}  // namespace
-
-StudentNet quantise_student(const Parameters& student, const PriceMap& price_map,
-                            double saturation) {
-  const ConstMlp mlp(kStudentShape, student.data());
-  const Eigen::MatrixXd w1 = mlp.w1.cast<double>();
-  const Eigen::MatrixXd w2 = mlp.w2.cast<double>();
-  const Eigen::MatrixXd w3 = mlp.w3.cast<double>();
-  const Eigen::VectorXd b1 = mlp.b1.cast<double>();
-  const Eigen::VectorXd b2 = mlp.b2.cast<double>();
-  const Eigen::VectorXd b3 = mlp.b3.cast<double>();
-  const Range input{Eigen::VectorXd::Zero(kStudentInputs), Eigen::VectorXd::Ones(kStudentInputs)};
-  const Range hidden1 = relu_range(affine_range(w1, b1, input), saturation);
-  const Range hidden2 = relu_range(affine_range(w2, b2, hidden1), saturation);
-
-  StudentNet net{};
-  std::ranges::copy(price_map.table(), net.price_map);
-  const int bits1 = weight_bits(w1, b1, input, kInputBits);
-  const int hidden1_bits = std::min(activation_bits(hidden1, saturation), bits1 + kInputBits);
-  quantise_layer(w1, b1, bits1, kInputBits, net.layer1);
-  net.relu1.shift = bits1 + kInputBits - hidden1_bits;
-  const int bits2 = weight_bits(w2, b2, hidden1, hidden1_bits);
-  const int hidden2_bits = std::min(activation_bits(hidden2, saturation), bits2 + hidden1_bits);
-  quantise_layer(w2, b2, bits2, hidden1_bits, net.layer2);
-  net.relu2.shift = bits2 + hidden1_bits - hidden2_bits;
-  const int bits3 = weight_bits(w3, b3, hidden2, hidden2_bits);
-  quantise_layer(w3, b3, bits3, hidden2_bits, net.layer3);
-  return net;
-}
-
-std::int64_t accumulator_bound(const StudentNet& net) {
-  const std::vector<std::int64_t> input(kStudentInputs, kInputOne);
-  const auto hidden1 = activation_bound(net.layer1, net.relu1.shift, input);
-  const auto hidden2 = activation_bound(net.layer2, net.relu2.shift, hidden1);
-  const auto rounding = [](int shift) { return shift > 0 ? std::int64_t{1} << (shift - 1) : 0; };
-  return std::max({sum_bound(net.layer1, input) + rounding(net.relu1.shift),
-                   sum_bound(net.layer2, hidden1) + rounding(net.relu2.shift),
-                   sum_bound(net.layer3, hidden2)});
-}
-
-namespace {
-
 constexpr const char* kFormat = "bess-student";
 constexpr int kFormatVersion = 5;
 constexpr int kVersionWithoutOutlook = 4;  ///< still written for other contexts
@@ -310,6 +268,44 @@ Json certificate_json(const Certificate& c) {
 }
 
 }  // namespace
+
+StudentNet quantise_student(const Parameters& student, const PriceMap& price_map,
+                            double saturation) {
+  const ConstMlp mlp(kStudentShape, student.data());
+  const Eigen::MatrixXd w1 = mlp.w1.cast<double>();
+  const Eigen::MatrixXd w2 = mlp.w2.cast<double>();
+  const Eigen::MatrixXd w3 = mlp.w3.cast<double>();
+  const Eigen::VectorXd b1 = mlp.b1.cast<double>();
+  const Eigen::VectorXd b2 = mlp.b2.cast<double>();
+  const Eigen::VectorXd b3 = mlp.b3.cast<double>();
+  const Range input{Eigen::VectorXd::Zero(kStudentInputs), Eigen::VectorXd::Ones(kStudentInputs)};
+  const Range hidden1 = relu_range(affine_range(w1, b1, input), saturation);
+  const Range hidden2 = relu_range(affine_range(w2, b2, hidden1), saturation);
+
+  StudentNet net{};
+  std::ranges::copy(price_map.table(), net.price_map);
+  const int bits1 = weight_bits(w1, b1, input, kInputBits);
+  const int hidden1_bits = std::min(activation_bits(hidden1, saturation), bits1 + kInputBits);
+  quantise_layer(w1, b1, bits1, kInputBits, net.layer1);
+  net.relu1.shift = bits1 + kInputBits - hidden1_bits;
+  const int bits2 = weight_bits(w2, b2, hidden1, hidden1_bits);
+  const int hidden2_bits = std::min(activation_bits(hidden2, saturation), bits2 + hidden1_bits);
+  quantise_layer(w2, b2, bits2, hidden1_bits, net.layer2);
+  net.relu2.shift = bits2 + hidden1_bits - hidden2_bits;
+  const int bits3 = weight_bits(w3, b3, hidden2, hidden2_bits);
+  quantise_layer(w3, b3, bits3, hidden2_bits, net.layer3);
+  return net;
+}
+
+std::int64_t accumulator_bound(const StudentNet& net) {
+  const std::vector<std::int64_t> input(kStudentInputs, kInputOne);
+  const auto hidden1 = activation_bound(net.layer1, net.relu1.shift, input);
+  const auto hidden2 = activation_bound(net.layer2, net.relu2.shift, hidden1);
+  const auto rounding = [](int shift) { return shift > 0 ? std::int64_t{1} << (shift - 1) : 0; };
+  return std::max({sum_bound(net.layer1, input) + rounding(net.relu1.shift),
+                   sum_bound(net.layer2, hidden1) + rounding(net.relu2.shift),
+                   sum_bound(net.layer3, hidden2)});
+}
 
 void add_property_violations(const Certificate& certificate, Json& json) {
   for (int property = 1; property <= kPropertyCount; ++property) {

@@ -22,6 +22,26 @@ std::vector<double> sorted_observed(const MarketSteps& market, Split split) {
   return prices;
 }
 
+constexpr std::string_view kTrainingHeader =
+    "step,loss,validation_eur_per_day_per_mwh,validation_smoothed,edge_mass_frac,"
+    "gain_at_least_eur_per_day_per_mwh";
+constexpr std::string_view kDistilHeader = "epoch,teacher_loss,correction_loss,visited_loss";
+
+/// Rows of `kColumns` numbers under a known header; may be empty.
+template <std::size_t kColumns>
+std::vector<std::array<double, kColumns>> parse_rows(std::string_view text, std::string_view header,
+                                                     std::string_view name) {
+  std::vector<std::array<double, kColumns>> rows;
+  if (text == fmt::format("{}\n", header)) return rows;
+  const CsvTable table(text, std::string(name), header);
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    std::array<double, kColumns> values{};
+    for (std::size_t i = 0; i < kColumns; ++i) values[i] = table.number(row, i);
+    rows.push_back(values);
+  }
+  return rows;
+}
+
 }  // namespace
 
 std::vector<double> PriceHistogram::percent_by_bin(const std::vector<double>& sorted) const {
@@ -69,30 +89,6 @@ PictureTable histogram_table(const PriceHistogram& shown) {
   }
   return table;
 }
-
-namespace {
-
-constexpr std::string_view kTrainingHeader =
-    "step,loss,validation_eur_per_day_per_mwh,validation_smoothed,edge_mass_frac,"
-    "gain_at_least_eur_per_day_per_mwh";
-constexpr std::string_view kDistilHeader = "epoch,teacher_loss,correction_loss,visited_loss";
-
-/// Rows of `kColumns` numbers under a known header; may be empty.
-template <std::size_t kColumns>
-std::vector<std::array<double, kColumns>> parse_rows(std::string_view text, std::string_view header,
-                                                     std::string_view name) {
-  std::vector<std::array<double, kColumns>> rows;
-  if (text == fmt::format("{}\n", header)) return rows;
-  const CsvTable table(text, std::string(name), header);
-  for (std::size_t row = 0; row < table.row_count(); ++row) {
-    std::array<double, kColumns> values{};
-    for (std::size_t i = 0; i < kColumns; ++i) values[i] = table.number(row, i);
-    rows.push_back(values);
-  }
-  return rows;
-}
-
-}  // namespace
 
 std::string training_curve_csv(const std::vector<CurvePoint>& curve) {
   std::vector<double> profit;

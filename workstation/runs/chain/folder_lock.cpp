@@ -44,6 +44,27 @@ void handle_with(void (*handler)(int)) {
   std::signal(SIGTERM, handler);
 }
 
+[[noreturn]] void at_work(const std::filesystem::path& place) {
+  fail("{}: in use by another bess-train; wait for it, or choose another --out", place.string());
+}
+
+/// For file systems without locks, as on many clusters.
+void warn_unlocked(const std::filesystem::path& place) {
+  fmt::print(
+      stderr,
+      "bess-train: warning: {}: its file system has no locks ({}): do not run another bess-train "
+      "here at the same time [no-lock]\n",
+      place.string(), std::strerror(errno));
+}
+
+/// A program deletes its lock file when it ends; a lock on a deleted file is not valid.
+bool is_still_there(int fd, const std::filesystem::path& path) {
+  struct stat held {};
+  struct stat named {};
+  return fstat(fd, &held) == 0 && stat(path.c_str(), &named) == 0 && held.st_ino == named.st_ino &&
+         held.st_dev == named.st_dev;
+}
+
 }  // namespace
 
 void end_when_interrupted(const std::string& note) {
@@ -84,31 +105,6 @@ void sleep_unless(double seconds, const std::atomic<bool>& interrupted) {
     std::this_thread::sleep_for(std::min(left, std::chrono::duration<double>(0.1)));
   }
 }
-
-namespace {
-
-[[noreturn]] void at_work(const std::filesystem::path& place) {
-  fail("{}: in use by another bess-train; wait for it, or choose another --out", place.string());
-}
-
-/// For file systems without locks, as on many clusters.
-void warn_unlocked(const std::filesystem::path& place) {
-  fmt::print(
-      stderr,
-      "bess-train: warning: {}: its file system has no locks ({}): do not run another bess-train "
-      "here at the same time [no-lock]\n",
-      place.string(), std::strerror(errno));
-}
-
-/// A program deletes its lock file when it ends; a lock on a deleted file is not valid.
-bool is_still_there(int fd, const std::filesystem::path& path) {
-  struct stat held {};
-  struct stat named {};
-  return fstat(fd, &held) == 0 && stat(path.c_str(), &named) == 0 && held.st_ino == named.st_ino &&
-         held.st_dev == named.st_dev;
-}
-
-}  // namespace
 
 FolderLock::FolderLock(const std::filesystem::path& folder, LockScope what)
     : fd_(open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {

@@ -19,6 +19,43 @@ constexpr LocalDate kStart{2023, 1, 1};
 constexpr int kDays = 365;
 constexpr std::uint64_t kSeed = 1;
 
+/// Reads the files again to name rows, only if there are findings.
+void judge_files(const std::vector<Finding>& found, const std::vector<std::string>& files,
+                 const AcceptedFindings& accepted) {
+  if (found.empty()) return;
+  std::vector<std::string> contents;
+  contents.reserve(files.size());  // keeps the views of `texts` valid
+  std::vector<PriceText> texts;
+  for (const std::string& file : files) {
+    contents.push_back(std::filesystem::is_regular_file(file) ? read_file(file) : std::string());
+    texts.push_back({file, contents.back()});
+  }
+  judge(found, accepted, texts);
+}
+
+/// A month with fewer days is not reported.
+constexpr int kDaysWorthNaming = 5;
+
+std::string untrained_months(const MarketSteps& market, bool learns_by_month) {
+  struct Days {
+    int all = 0, training = 0;
+  };
+  std::map<std::string, Days> days_of;
+  for (int month = 1; learns_by_month && month <= 12; ++month) days_of[fmt::format("{:02}", month)];
+  for (const MarketDay& day : market.days) {
+    const std::string name = fmt::format("{:04}-{:02}", day.year, day.month);
+    Days& days = days_of[learns_by_month ? name.substr(5) : name];
+    ++days.all;
+    days.training += day.split == Split::kTrain ? 1 : 0;
+  }
+  std::string names;
+  for (const auto& [name, days] : days_of) {
+    if (days.training > 0 || (!learns_by_month && days.all < kDaysWorthNaming)) continue;
+    names.append(names.empty() ? "" : ", ").append(name);
+  }
+  return names;
+}
+
 }  // namespace
 
 MinuteSeries built_in_market() {
@@ -56,24 +93,6 @@ std::shared_ptr<const DayAheadPublication> read_day_ahead(const std::string& pat
   return std::make_shared<DayAheadPublication>(std::move(series), published_min);
 }
 
-namespace {
-
-/// Reads the files again to name rows, only if there are findings.
-void judge_files(const std::vector<Finding>& found, const std::vector<std::string>& files,
-                 const AcceptedFindings& accepted) {
-  if (found.empty()) return;
-  std::vector<std::string> contents;
-  contents.reserve(files.size());  // keeps the views of `texts` valid
-  std::vector<PriceText> texts;
-  for (const std::string& file : files) {
-    contents.push_back(std::filesystem::is_regular_file(file) ? read_file(file) : std::string());
-    texts.push_back({file, contents.back()});
-  }
-  judge(found, accepted, texts);
-}
-
-}  // namespace
-
 void write_judged_day_ahead(const JoinedDayAhead& joined, const AcceptedFindings& accepted,
                             const std::vector<std::string>& files, const std::string& provenance,
                             const std::string& out) {
@@ -84,33 +103,6 @@ void write_judged_day_ahead(const JoinedDayAhead& joined, const AcceptedFindings
   write_day_ahead_file(out, joined.series, provenance + "\n" + description);
   fmt::print("{}written to {}\n", description, out);
 }
-
-namespace {
-
-/// A month with fewer days is not reported.
-constexpr int kDaysWorthNaming = 5;
-
-std::string untrained_months(const MarketSteps& market, bool learns_by_month) {
-  struct Days {
-    int all = 0, training = 0;
-  };
-  std::map<std::string, Days> days_of;
-  for (int month = 1; learns_by_month && month <= 12; ++month) days_of[fmt::format("{:02}", month)];
-  for (const MarketDay& day : market.days) {
-    const std::string name = fmt::format("{:04}-{:02}", day.year, day.month);
-    Days& days = days_of[learns_by_month ? name.substr(5) : name];
-    ++days.all;
-    days.training += day.split == Split::kTrain ? 1 : 0;
-  }
-  std::string names;
-  for (const auto& [name, days] : days_of) {
-    if (days.training > 0 || (!learns_by_month && days.all < kDaysWorthNaming)) continue;
-    names.append(names.empty() ? "" : ", ").append(name);
-  }
-  return names;
-}
-
-}  // namespace
 
 void PriceInput::add(ProgramCommand& command) {
   command

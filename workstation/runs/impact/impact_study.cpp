@@ -192,47 +192,6 @@ ImpactRow row_of(const std::vector<ImpactFigures>& seeds) {
   return row;
 }
 
-}  // namespace
-
-std::shared_ptr<Policy> fitted_policy(const std::string& name, const MinuteSeries& prices,
-                                      const FleetOptions& options) {
-  MarketSteps market =
-      make_market_steps(prices, {.observation_delay_min = options.observation_delay_min});
-  for (MarketDay& day : market.days) day.split = Split::kTrain;
-  return make_policy(name, market, options.battery);
-}
-
-std::vector<ImpactRow> study_impact(const ImpactPlan& plan, const FleetOptions& base) {
-  const std::size_t formulas = kFormulaNames.size();
-  const auto seeds = static_cast<std::size_t>(plan.seeds);
-  std::vector<std::vector<std::vector<ImpactFigures>>> found(formulas * seeds);
-  Progress progress("impact", "markets", static_cast<double>(found.size()));
-  parallel_for(found.size(), plan.threads, [&](std::size_t i) {
-    FleetOptions options = base;
-    options.formula = static_cast<PriceFormula>(i / seeds);
-    found[i] = figures_of(plan, options, SeedOfMarket(plan, i % seeds + 1));
-    progress.advance();
-  });
-  const std::vector<ImpactVariant> variants = impact_variants(plan);
-  std::vector<ImpactRow> rows;
-  for (std::size_t f = 0; f < formulas; ++f) {
-    for (std::size_t m = 0; m < plan.fleet_mw.size(); ++m) {
-      for (std::size_t v = 0; v < variants.size(); ++v) {
-        std::vector<ImpactFigures> of_seeds;
-        for (std::size_t s = 0; s < seeds; ++s) of_seeds.push_back(found[f * seeds + s][m][v]);
-        ImpactRow row = row_of(of_seeds);
-        row.formula = static_cast<PriceFormula>(f);
-        row.fleet_mw = plan.fleet_mw[m];
-        row.variant = variants[v].name;
-        rows.push_back(std::move(row));
-      }
-    }
-  }
-  return rows;
-}
-
-namespace {
-
 constexpr const char* kMoneyUnit = "EUR per MW and day";
 constexpr std::array kLineColours{"ink", "charge", "discharge", "muted", "soft", "mark", "idle"};
 
@@ -318,6 +277,43 @@ std::string plan_text(const ImpactPlan& plan) {
 }
 
 }  // namespace
+
+std::shared_ptr<Policy> fitted_policy(const std::string& name, const MinuteSeries& prices,
+                                      const FleetOptions& options) {
+  MarketSteps market =
+      make_market_steps(prices, {.observation_delay_min = options.observation_delay_min});
+  for (MarketDay& day : market.days) day.split = Split::kTrain;
+  return make_policy(name, market, options.battery);
+}
+
+std::vector<ImpactRow> study_impact(const ImpactPlan& plan, const FleetOptions& base) {
+  const std::size_t formulas = kFormulaNames.size();
+  const auto seeds = static_cast<std::size_t>(plan.seeds);
+  std::vector<std::vector<std::vector<ImpactFigures>>> found(formulas * seeds);
+  Progress progress("impact", "markets", static_cast<double>(found.size()));
+  parallel_for(found.size(), plan.threads, [&](std::size_t i) {
+    FleetOptions options = base;
+    options.formula = static_cast<PriceFormula>(i / seeds);
+    found[i] = figures_of(plan, options, SeedOfMarket(plan, i % seeds + 1));
+    progress.advance();
+  });
+  const std::vector<ImpactVariant> variants = impact_variants(plan);
+  std::vector<ImpactRow> rows;
+  for (std::size_t f = 0; f < formulas; ++f) {
+    for (std::size_t m = 0; m < plan.fleet_mw.size(); ++m) {
+      for (std::size_t v = 0; v < variants.size(); ++v) {
+        std::vector<ImpactFigures> of_seeds;
+        for (std::size_t s = 0; s < seeds; ++s) of_seeds.push_back(found[f * seeds + s][m][v]);
+        ImpactRow row = row_of(of_seeds);
+        row.formula = static_cast<PriceFormula>(f);
+        row.fleet_mw = plan.fleet_mw[m];
+        row.variant = variants[v].name;
+        rows.push_back(std::move(row));
+      }
+    }
+  }
+  return rows;
+}
 
 std::string format_impact_table(const ImpactPlan& plan, const std::vector<ImpactRow>& rows) {
   std::string text =

@@ -51,6 +51,24 @@ void add_cycle(const LoggedCycle& c, LoggedDay& day) {
   day.has_reading = true;
 }
 
+std::int32_t day_of(const std::string& text, const char* option, std::int32_t otherwise) {
+  if (text.empty()) return otherwise;
+  const auto [year, month, day] = parse_local_date(text, option);
+  return (year * 100 + month) * 100 + day;
+}
+
+void report_log(const std::string& file, const CycleLog& log, const std::vector<LoggedDay>& days) {
+  int missing = 0;
+  for (const LoggedDay& day : days) missing += day.missing;
+  const auto report_count = [&](int count, const char* noun, const char* what) {
+    if (count == 0) return;
+    fmt::print(stderr, "{}: {} {}\n", file, counted(static_cast<std::size_t>(count), noun), what);
+  };
+  report_count(log.torn, "last line", "without a line end: ignored");
+  report_count(log.duplicates, "row", "with a duplicate time: ignored");
+  report_count(missing, "tick", "without a row: energy estimated from the state of charge");
+}
+
 }  // namespace
 
 std::vector<SettledQuarter> read_settled(const std::string& path) {
@@ -187,28 +205,6 @@ void require_same_battery(const CycleLog& log, const BatteryParameters& battery,
       "configuration of this battery with --config",
       most_w, config.empty() ? "the defaults" : config, battery.power_w_max);
 }
-
-namespace {
-
-std::int32_t day_of(const std::string& text, const char* option, std::int32_t otherwise) {
-  if (text.empty()) return otherwise;
-  const auto [year, month, day] = parse_local_date(text, option);
-  return (year * 100 + month) * 100 + day;
-}
-
-void report_log(const std::string& file, const CycleLog& log, const std::vector<LoggedDay>& days) {
-  int missing = 0;
-  for (const LoggedDay& day : days) missing += day.missing;
-  const auto report_count = [&](int count, const char* noun, const char* what) {
-    if (count == 0) return;
-    fmt::print(stderr, "{}: {} {}\n", file, counted(static_cast<std::size_t>(count), noun), what);
-  };
-  report_count(log.torn, "last line", "without a line end: ignored");
-  report_count(log.duplicates, "row", "with a duplicate time: ignored");
-  report_count(missing, "tick", "without a row: energy estimated from the state of charge");
-}
-
-}  // namespace
 
 void LogInput::add(ProgramCommand& command, bool counts_money) {
   counts_money_ = counts_money;

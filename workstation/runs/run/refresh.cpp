@@ -31,66 +31,6 @@ double total_eur(const Evaluation& evaluation) {
   return sum;
 }
 
-}  // namespace
-
-CandidateRun judge_refit(const StudentFile& before, const StudentFile& now,
-                         const MarketSteps& market, const RunConfig& config) {
-  const std::vector<MarketDay> days = market.days_of(Split::kTest);
-  std::vector<StepRecord> path;
-  const auto traded = [&](Policy& policy, std::vector<StepRecord>* records) {
-    return evaluate_carried_over(market, days, policy, config.battery, config.initial_soc_frac,
-                                 records);
-  };
-  const auto own = exported_policy(before);
-  const auto refit = exported_policy(now);
-  CandidateRun candidate{traded(*own, &path), traded(*refit, nullptr), {}, 0, {}};
-  candidate.gain = paired_difference(candidate.now, candidate.before);
-  for (const MarketDay& day : days) {
-    for (const MarketStep& step : market.of(day)) {
-      const double soc_frac = path[candidate.decisions++].soc_frac;
-      const Action was = own->decide(step, 0, soc_frac);
-      const Action is = refit->decide(step, 0, soc_frac);
-      if (was != is) candidate.differing.push_back({step, soc_frac, was, is});
-    }
-  }
-  return candidate;
-}
-
-std::string differing_decisions_csv(const CandidateRun& candidate) {
-  std::string csv = "utc,price_eur_mwh,paid_eur_mwh,soc,before,now\n";
-  for (const auto& [step, soc_frac, before, now] : candidate.differing) {
-    csv += fmt::format("{},{},{},{:.4f},{},{}\n", utc_text(step.utc_s).view(),
-                       step.observed_eur_per_mwh, step.paid_eur_per_mwh, soc_frac,
-                       action_name(before), action_name(now));
-  }
-  return csv;
-}
-
-std::string candidate_text(const CandidateRun& candidate) {
-  const auto& days = candidate.before.days;
-  std::string text =
-      fmt::format("evaluated on {} days, {} to {}, not used in training; SoC carried over\n",
-                  days.size(), days.front().date, days.back().date);
-  for (const auto& [name, of] : {std::pair("the run's student", &candidate.before),
-                                 std::pair("the candidate's student", &candidate.now)}) {
-    text += fmt::format("  {:<24} {:>9.1f} EUR per day and MWh {:>13.2f} EUR in total\n", name,
-                        of->profit_eur_per_day_per_mwh(), total_eur(*of));
-  }
-  text += fmt::format("  {:<24} {:>+9.1f} standard error {:.1f} (by month {})\n",
-                      "gain, day by day", candidate.gain.mean, candidate.gain.errors.plain,
-                      error_text(candidate.gain.errors.by_month, 1));
-  text +=
-      fmt::format("  {} of {} decisions differ\n", candidate.differing.size(), candidate.decisions);
-  std::map<std::string, int> changes;
-  for (const DifferingDecision& d : candidate.differing) {
-    ++changes[fmt::format("{} -> {}", action_name(d.before), action_name(d.now))];
-  }
-  for (const auto& [change, count] : changes) text += fmt::format("  {:>9} {}\n", count, change);
-  return text;
-}
-
-namespace {
-
 Json candidate_json(const CandidateRun& candidate) {
   return Json::object({{"days", candidate.before.days.size()},
                        {"decisions", candidate.decisions},
@@ -356,6 +296,62 @@ class Refresh {
 };
 
 }  // namespace
+
+CandidateRun judge_refit(const StudentFile& before, const StudentFile& now,
+                         const MarketSteps& market, const RunConfig& config) {
+  const std::vector<MarketDay> days = market.days_of(Split::kTest);
+  std::vector<StepRecord> path;
+  const auto traded = [&](Policy& policy, std::vector<StepRecord>* records) {
+    return evaluate_carried_over(market, days, policy, config.battery, config.initial_soc_frac,
+                                 records);
+  };
+  const auto own = exported_policy(before);
+  const auto refit = exported_policy(now);
+  CandidateRun candidate{traded(*own, &path), traded(*refit, nullptr), {}, 0, {}};
+  candidate.gain = paired_difference(candidate.now, candidate.before);
+  for (const MarketDay& day : days) {
+    for (const MarketStep& step : market.of(day)) {
+      const double soc_frac = path[candidate.decisions++].soc_frac;
+      const Action was = own->decide(step, 0, soc_frac);
+      const Action is = refit->decide(step, 0, soc_frac);
+      if (was != is) candidate.differing.push_back({step, soc_frac, was, is});
+    }
+  }
+  return candidate;
+}
+
+std::string differing_decisions_csv(const CandidateRun& candidate) {
+  std::string csv = "utc,price_eur_mwh,paid_eur_mwh,soc,before,now\n";
+  for (const auto& [step, soc_frac, before, now] : candidate.differing) {
+    csv += fmt::format("{},{},{},{:.4f},{},{}\n", utc_text(step.utc_s).view(),
+                       step.observed_eur_per_mwh, step.paid_eur_per_mwh, soc_frac,
+                       action_name(before), action_name(now));
+  }
+  return csv;
+}
+
+std::string candidate_text(const CandidateRun& candidate) {
+  const auto& days = candidate.before.days;
+  std::string text =
+      fmt::format("evaluated on {} days, {} to {}, not used in training; SoC carried over\n",
+                  days.size(), days.front().date, days.back().date);
+  for (const auto& [name, of] : {std::pair("the run's student", &candidate.before),
+                                 std::pair("the candidate's student", &candidate.now)}) {
+    text += fmt::format("  {:<24} {:>9.1f} EUR per day and MWh {:>13.2f} EUR in total\n", name,
+                        of->profit_eur_per_day_per_mwh(), total_eur(*of));
+  }
+  text += fmt::format("  {:<24} {:>+9.1f} standard error {:.1f} (by month {})\n",
+                      "gain, day by day", candidate.gain.mean, candidate.gain.errors.plain,
+                      error_text(candidate.gain.errors.by_month, 1));
+  text +=
+      fmt::format("  {} of {} decisions differ\n", candidate.differing.size(), candidate.decisions);
+  std::map<std::string, int> changes;
+  for (const DifferingDecision& d : candidate.differing) {
+    ++changes[fmt::format("{} -> {}", action_name(d.before), action_name(d.now))];
+  }
+  for (const auto& [change, count] : changes) text += fmt::format("  {:>9} {}\n", count, change);
+  return text;
+}
 
 void refresh(const RefreshRequest& request) { Refresh(request).go(); }
 

@@ -26,6 +26,30 @@ MarketSteps market_of_days(const MarketSteps& market, const FoldDays& days) {
   return std::move(std::get<Fold>(made).market);
 }
 
+namespace fs = std::filesystem;
+
+double number(const JsonValue& value) {
+  return value.number().value_or(std::numeric_limits<double>::quiet_NaN());
+}
+
+JsonValue chain_of(const JsonValue& backtest) {
+  for (const JsonValue policy : backtest["policies"]) {
+    if (policy["policy"].text_or("") == std::string_view(kChainName)) return policy;
+  }
+  return JsonValue{};
+}
+
+/// Names the run's folder as kRunPlace, so that the text does not depend on its location.
+std::string how_to_make_one(const RunRecord& record) {
+  const bool is_own = !fs::path(record.prices).is_absolute();
+  return fmt::format(
+      "'bess-train backtest --prices {}{}{}{} --config {}{} --seed {} --out {}{}' creates one ({}: "
+      "this run's folder)",
+      is_own ? kRunPlace : "", record.prices, record.day_ahead.empty() ? "" : " --day-ahead ",
+      record.day_ahead, kRunPlace, run_file::kConfig, record.value("seed"), kRunPlace,
+      kRunsBacktest, kRunPlace);
+}
+
 }  // namespace
 
 std::string FoldDays::name() const {
@@ -57,34 +81,6 @@ MarketSteps market_of_fold(const MarketSteps& market, const std::string& month) 
   }
   return std::move(found->market);
 }
-
-namespace {
-
-namespace fs = std::filesystem;
-
-double number(const JsonValue& value) {
-  return value.number().value_or(std::numeric_limits<double>::quiet_NaN());
-}
-
-JsonValue chain_of(const JsonValue& backtest) {
-  for (const JsonValue policy : backtest["policies"]) {
-    if (policy["policy"].text_or("") == std::string_view(kChainName)) return policy;
-  }
-  return JsonValue{};
-}
-
-/// Names the run's folder as kRunPlace, so that the text does not depend on its location.
-std::string how_to_make_one(const RunRecord& record) {
-  const bool is_own = !fs::path(record.prices).is_absolute();
-  return fmt::format(
-      "'bess-train backtest --prices {}{}{}{} --config {}{} --seed {} --out {}{}' creates one ({}: "
-      "this run's folder)",
-      is_own ? kRunPlace : "", record.prices, record.day_ahead.empty() ? "" : " --day-ahead ",
-      record.day_ahead, kRunPlace, run_file::kConfig, record.value("seed"), kRunPlace,
-      kRunsBacktest, kRunPlace);
-}
-
-}  // namespace
 
 std::string with_run_folder(std::string text, const fs::path& folder) {
   replace_all(text, kRunPlace, folder.string() + "/");

@@ -101,28 +101,6 @@ Entries making_facts(const RunFolder& folder) {
   return facts;
 }
 
-}  // namespace
-
-std::string program_text() { return fmt::format("bess-train {}, {}", BESS_VERSION, build_line()); }
-
-Entries run_facts(const RunConfig& config, const MarketSteps& market, const RunFolder& folder) {
-  Entries facts = making_facts(folder);
-  const auto delay_min = static_cast<std::size_t>(config.market.observation_delay_min);
-  facts.insert(facts.end(),
-               {{"program", program_text()},
-                {"prices", prices_text(folder)},
-                {"span", span_text(market)},
-                {"observation delay", counted(delay_min, "minute")},
-                {"settlement", config.market.settlement == Settlement::kMinute
-                                   ? "per minute, by its quarter-hour"
-                                   : "per step, by the quarter-hour in which it starts"},
-                {"keys changed", changed_keys_text(config)},
-                {"seed, threads", fmt::format("{}, {}", config.train.seed, config.train.threads)}});
-  return facts;
-}
-
-namespace {
-
 const NamedEvaluation& exported(const RunSummary& run) {
   const NamedEvaluation* found = find_evaluation(run.evaluations, kCorrectedName);
   if (found == nullptr) {
@@ -201,7 +179,83 @@ std::size_t rules_of(const RunSummary& run) {
   return rules.empty() ? 0 : parse_rules(rules, "run.json: rules").rules.size();
 }
 
+NamedEvaluation evaluate_both(const std::string& name, Policy& policy, const RunResults& run) {
+  const std::vector<MarketDay> days = run.market.days_of(Split::kTest);
+  return {name, evaluate(run.market, days, policy, {run.battery, run.initial_soc_frac, false}),
+          evaluate_carried_over(run.market, days, policy, run.battery, run.initial_soc_frac)};
+}
+
+/// Violations before and after the correction, by property and rule.
+std::string violations_text(const Certificate& plain, const Certificate& corrected) {
+  const auto properties = [](const Certificate& c) {
+    return fmt::format("{} / {} / {} in {} states", c.violations_of(1), c.violations_of(2),
+                       c.violations_of(3), c.states_checked);
+  };
+  const std::string before_head = fmt::format("before correction ({})", kPlainName);
+  const std::string after_head = fmt::format("after correction ({})", own_student_name(corrected));
+  const auto lines = [&](const std::string& of_plain, const std::string& of_corrected) {
+    return fmt::format("  {:<36} {}\n  {:<36} {}\n", before_head, of_plain, after_head,
+                       of_corrected);
+  };
+  std::string text =
+      "\nviolations of properties 1 / 2 / 3\n" + lines(properties(plain), properties(corrected));
+  const std::vector<DemandCount> before = demand_counts(plain);
+  const std::vector<DemandCount> after = demand_counts(corrected);
+  for (std::size_t d = kPropertyCount; d < after.size(); ++d) {
+    text += fmt::format("violations of rule \"{}\" ({})\n", after[d].name, after[d].text);
+    if (!after[d].binds_student) {
+      text += "  enforced by the guard only\n";
+      continue;
+    }
+    const auto counted = [](const DemandCount& count) {
+      return fmt::format("{} in {} states", count.violations, count.states);
+    };
+    text += lines(counted(before[d]), counted(after[d]));
+  }
+  return text;
+}
+
+/// Plain student, also under each rule.
+void evaluate_plain(const RunResults& run, std::vector<NamedEvaluation>& all) {
+  const auto plain = std::make_shared<StudentPolicy>(run.plain->net, run.plain->outlook);
+  all.push_back(evaluate_both(kPlainName, *plain, run));
+  const auto under = [&](const std::string& name, const RuleSet& rules) {
+    RuledPolicy ruled(plain, rules, run.plain->net.context);
+    all.push_back(evaluate_both(name, ruled, run));
+  };
+  const RuleSet projected = projected_rules(run.corrected.certificate.rules);
+  for (const Rule& rule : projected.rules) under(under_rule_name(rule.name), {{rule}});
+  if (!projected.empty()) under(kUnderAllRules, projected);
+}
+
+/// Expected full cycles, with the keys that limit them for a warranty.
+std::string cycles_text(const StudentFile& student) {
+  if (!student.cycles_per_day) return {};
+  return fmt::format(
+      "expect about {:.1f} full cycles a day (validation days); limit them with [battery] "
+      "wear_eur_per_mwh or cycles_per_day_max\n",
+      *student.cycles_per_day);
+}
+
 }  // namespace
+
+std::string program_text() { return fmt::format("bess-train {}, {}", BESS_VERSION, build_line()); }
+
+Entries run_facts(const RunConfig& config, const MarketSteps& market, const RunFolder& folder) {
+  Entries facts = making_facts(folder);
+  const auto delay_min = static_cast<std::size_t>(config.market.observation_delay_min);
+  facts.insert(facts.end(),
+               {{"program", program_text()},
+                {"prices", prices_text(folder)},
+                {"span", span_text(market)},
+                {"observation delay", counted(delay_min, "minute")},
+                {"settlement", config.market.settlement == Settlement::kMinute
+                                   ? "per minute, by its quarter-hour"
+                                   : "per step, by the quarter-hour in which it starts"},
+                {"keys changed", changed_keys_text(config)},
+                {"seed, threads", fmt::format("{}, {}", config.train.seed, config.train.threads)}});
+  return facts;
+}
 
 std::string value_text(const RunRecord& record, const std::string& key) {
   const std::string value = record.value(key);
@@ -314,68 +368,6 @@ std::string format_runs_table(const std::vector<RunSummary>& runs) {
   if (!differs.empty()) text += "\nDifferent settings\n" + differs;
   return text;
 }
-
-namespace {
-
-NamedEvaluation evaluate_both(const std::string& name, Policy& policy, const RunResults& run) {
-  const std::vector<MarketDay> days = run.market.days_of(Split::kTest);
-  return {name, evaluate(run.market, days, policy, {run.battery, run.initial_soc_frac, false}),
-          evaluate_carried_over(run.market, days, policy, run.battery, run.initial_soc_frac)};
-}
-
-/// Violations before and after the correction, by property and rule.
-std::string violations_text(const Certificate& plain, const Certificate& corrected) {
-  const auto properties = [](const Certificate& c) {
-    return fmt::format("{} / {} / {} in {} states", c.violations_of(1), c.violations_of(2),
-                       c.violations_of(3), c.states_checked);
-  };
-  const std::string before_head = fmt::format("before correction ({})", kPlainName);
-  const std::string after_head = fmt::format("after correction ({})", own_student_name(corrected));
-  const auto lines = [&](const std::string& of_plain, const std::string& of_corrected) {
-    return fmt::format("  {:<36} {}\n  {:<36} {}\n", before_head, of_plain, after_head,
-                       of_corrected);
-  };
-  std::string text =
-      "\nviolations of properties 1 / 2 / 3\n" + lines(properties(plain), properties(corrected));
-  const std::vector<DemandCount> before = demand_counts(plain);
-  const std::vector<DemandCount> after = demand_counts(corrected);
-  for (std::size_t d = kPropertyCount; d < after.size(); ++d) {
-    text += fmt::format("violations of rule \"{}\" ({})\n", after[d].name, after[d].text);
-    if (!after[d].binds_student) {
-      text += "  enforced by the guard only\n";
-      continue;
-    }
-    const auto counted = [](const DemandCount& count) {
-      return fmt::format("{} in {} states", count.violations, count.states);
-    };
-    text += lines(counted(before[d]), counted(after[d]));
-  }
-  return text;
-}
-
-/// Plain student, also under each rule.
-void evaluate_plain(const RunResults& run, std::vector<NamedEvaluation>& all) {
-  const auto plain = std::make_shared<StudentPolicy>(run.plain->net, run.plain->outlook);
-  all.push_back(evaluate_both(kPlainName, *plain, run));
-  const auto under = [&](const std::string& name, const RuleSet& rules) {
-    RuledPolicy ruled(plain, rules, run.plain->net.context);
-    all.push_back(evaluate_both(name, ruled, run));
-  };
-  const RuleSet projected = projected_rules(run.corrected.certificate.rules);
-  for (const Rule& rule : projected.rules) under(under_rule_name(rule.name), {{rule}});
-  if (!projected.empty()) under(kUnderAllRules, projected);
-}
-
-/// Expected full cycles, with the keys that limit them for a warranty.
-std::string cycles_text(const StudentFile& student) {
-  if (!student.cycles_per_day) return {};
-  return fmt::format(
-      "expect about {:.1f} full cycles a day (validation days); limit them with [battery] "
-      "wear_eur_per_mwh or cycles_per_day_max\n",
-      *student.cycles_per_day);
-}
-
-}  // namespace
 
 void require_test_days(const MarketSteps& market, const std::string& prices) {
   if (!market.days_of(Split::kTest).empty()) return;

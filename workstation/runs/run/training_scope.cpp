@@ -28,6 +28,18 @@ Entries with_defaults(Entries there, const Entries& here) {
   return there;
 }
 
+/// Price regimes of `days` without training days, in a sentence; empty when none, or unknown.
+std::string unknown_regimes(const Entries& there, const MarketSteps& market,
+                            const std::vector<MarketDay>& days) {
+  const auto learnt = learnt_span(there);
+  if (!learnt || days.empty()) return {};
+  const std::string regimes = regimes_not_learnt(*learnt, market.span_of(days));
+  if (regimes.empty()) return {};
+  return fmt::format(
+      "trained on prices of {} to {}, but these days are in another price regime: {}",
+      local_date_text(learnt->from_s).view(), local_date_text(learnt->until_s - 1).view(), regimes);
+}
+
 }  // namespace
 
 Entries learnt_for(const RunConfig& config, const std::string& prices) {
@@ -56,22 +68,6 @@ std::string learnt_otherwise(const Entries& there, const Entries& here) {
   });
   return differences(with_defaults(std::move(of_both), here), here);
 }
-
-namespace {
-
-/// Price regimes of `days` without training days, in a sentence; empty when none, or unknown.
-std::string unknown_regimes(const Entries& there, const MarketSteps& market,
-                            const std::vector<MarketDay>& days) {
-  const auto learnt = learnt_span(there);
-  if (!learnt || days.empty()) return {};
-  const std::string regimes = regimes_not_learnt(*learnt, market.span_of(days));
-  if (regimes.empty()) return {};
-  return fmt::format(
-      "trained on prices of {} to {}, but these days are in another price regime: {}",
-      local_date_text(learnt->from_s).view(), local_date_text(learnt->until_s - 1).view(), regimes);
-}
-
-}  // namespace
 
 std::string old_prices(const MinuteSeries& series, std::int64_t now_utc_s) {
   const auto date = [](std::int64_t utc_s) { return local_date_text(utc_s); };

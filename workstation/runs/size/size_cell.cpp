@@ -92,35 +92,6 @@ void read_purchase(TomlTable& top, SizePlan& plan) {
   ageing.finish();
 }
 
-}  // namespace
-
-SizePlan read_size_plan(const std::string& path, const RunConfig& base) {
-  TomlValue document;
-  std::string error;
-  if (!parse_toml_text(read_file(path, kTomlBytesMax), path, document, error)) {
-    throw UserError(error);
-  }
-  SizePlan plan;
-  TomlTable top(&document, path, "", error);
-  top.require("size");
-  TomlTable size(top.table("size"), path, "[size]", error);
-  plan.power_w = read_kilos(size, "power_kw");
-  plan.capacity_wh = read_kilos(size, "capacity_kwh");
-  size.integer("window_days", plan.window_days, 30, 3650);
-  size.line("policy", plan.policy);
-  size.finish();
-  read_contracts(top, base, plan);
-  read_purchase(top, plan);
-  top.finish();
-  if (!error.empty()) throw UserError(error);
-  const std::size_t cells = plan.power_w.size() * plan.capacity_wh.size() * plan.contracts.size();
-  if (cells > kCellsMax)
-    fail("{}: {} cells exceed the maximum of {}; use fewer values", path, cells, kCellsMax);
-  return plan;
-}
-
-namespace {
-
 /// Traded days, as days of the whole market.
 std::vector<MarketDay> traded_days(const MarketSteps& market, const Evaluation& traded) {
   std::vector<MarketDay> days;
@@ -154,29 +125,6 @@ SizeClass trade_class(const RunConfig& config, const SizeBacktest& backtest) {
   return {config.battery, std::move(walked.total), month_peaks(steps, config.battery.power_w_max),
           bound > 0 ? profit / bound : NAN};
 }
-
-}  // namespace
-
-std::vector<MonthPeak> month_peaks(const std::vector<StepRecord>& steps, double power_w_max) {
-  std::map<std::int64_t, double> watt_minutes;  // imported, by quarter-hour
-  for (const StepRecord& step : steps) {
-    for (int minute = 0; minute < kMinutesPerStep; ++minute) {
-      watt_minutes[(step.utc_s + 60 * minute) / kSecondsPerQuarterHour] +=
-          std::max(step.power_w, 0.0);
-    }
-  }
-  std::vector<MonthPeak> peaks;
-  for (const auto& [quarter_hour, sum] : watt_minutes) {
-    const std::string month =
-        format_local_date(local_date_of(quarter_hour * kSecondsPerQuarterHour)).substr(0, 7);
-    if (peaks.empty() || peaks.back().month != month) peaks.push_back({month, 0});
-    const double share = sum / kMinutesPerQuarterHour / power_w_max;
-    peaks.back().power_share = std::max(peaks.back().power_share, share);
-  }
-  return peaks;
-}
-
-namespace {
 
 /// One class for each of the canonical `configs`. Throws UserError.
 std::vector<SizeClass> trade_classes(const std::vector<RunConfig>& configs,
@@ -219,6 +167,50 @@ double fixed_costs(const SizeContract& contract, const SizeClass& of, double pow
 }
 
 }  // namespace
+
+SizePlan read_size_plan(const std::string& path, const RunConfig& base) {
+  TomlValue document;
+  std::string error;
+  if (!parse_toml_text(read_file(path, kTomlBytesMax), path, document, error)) {
+    throw UserError(error);
+  }
+  SizePlan plan;
+  TomlTable top(&document, path, "", error);
+  top.require("size");
+  TomlTable size(top.table("size"), path, "[size]", error);
+  plan.power_w = read_kilos(size, "power_kw");
+  plan.capacity_wh = read_kilos(size, "capacity_kwh");
+  size.integer("window_days", plan.window_days, 30, 3650);
+  size.line("policy", plan.policy);
+  size.finish();
+  read_contracts(top, base, plan);
+  read_purchase(top, plan);
+  top.finish();
+  if (!error.empty()) throw UserError(error);
+  const std::size_t cells = plan.power_w.size() * plan.capacity_wh.size() * plan.contracts.size();
+  if (cells > kCellsMax)
+    fail("{}: {} cells exceed the maximum of {}; use fewer values", path, cells, kCellsMax);
+  return plan;
+}
+
+std::vector<MonthPeak> month_peaks(const std::vector<StepRecord>& steps, double power_w_max) {
+  std::map<std::int64_t, double> watt_minutes;  // imported, by quarter-hour
+  for (const StepRecord& step : steps) {
+    for (int minute = 0; minute < kMinutesPerStep; ++minute) {
+      watt_minutes[(step.utc_s + 60 * minute) / kSecondsPerQuarterHour] +=
+          std::max(step.power_w, 0.0);
+    }
+  }
+  std::vector<MonthPeak> peaks;
+  for (const auto& [quarter_hour, sum] : watt_minutes) {
+    const std::string month =
+        format_local_date(local_date_of(quarter_hour * kSecondsPerQuarterHour)).substr(0, 7);
+    if (peaks.empty() || peaks.back().month != month) peaks.push_back({month, 0});
+    const double share = sum / kMinutesPerQuarterHour / power_w_max;
+    peaks.back().power_share = std::max(peaks.back().power_share, share);
+  }
+  return peaks;
+}
 
 double SizeCell::eur_per_cycle() const { return eur_per_year() / (cycles_per_day * kDaysPerYear); }
 

@@ -86,65 +86,6 @@ MinuteSeries prices_of(const SweepFolder& folder, const SweepRecord& sweep) {
        prices_hash(series), sweep.prices);
 }
 
-}  // namespace
-
-bool is_complete(const SweepFolder& folder, int task) {
-  return fs::exists(folder.result(task) / kRecord);
-}
-
-bool is_proved(const SweepFolder& folder, int task) {
-  return is_complete(folder, task) && fs::exists(folder.result(task) / kStudent);
-}
-
-bool complete_task(const SweepFolder& folder, int task, const TaskWork& work) {
-  if (is_complete(folder, task)) return false;
-  const Log log = open_log(folder.log(task));
-  std::error_code ignored;
-  try {
-    const fs::path own = make_own_folder(folder.parts(task));
-    work(own, log.get());
-    publish(folder, task, own);
-  } catch (const std::exception& error) {
-    if (!is_complete(folder, task)) {  // else another attempt completed first
-      fmt::print(log.get(), "{}{}\n", kFailedLine, error.what());
-      throw;
-    }
-  }
-  // Removes folders of dead and late attempts; concurrent removals may collide, hence the retries.
-  for (int tries = 0; tries < 10 && fs::exists(folder.parts(task), ignored); ++tries) {
-    fs::remove_all(folder.parts(task), ignored);
-  }
-  fs::remove(folder.log(task), ignored);
-  return true;
-}
-
-bool run_task(const SweepFolder& folder, int number) {
-  const SweepRecord sweep = load_own_sweep(folder);
-  const std::vector<SweepTask> tasks = load_tasks(folder);
-  if (number < 1 || number > std::ssize(tasks)) {
-    fail("no task {}: {} has {} tasks", number, folder.tasks().string(), tasks.size());
-  }
-  const SweepTask& task = tasks[static_cast<std::size_t>(number - 1)];
-  setenv("SOURCE_DATE_EPOCH", fmt::format("{}", sweep.date_utc_s).c_str(), 1);
-  return complete_task(folder, number, [&](const fs::path& at, std::FILE* log) {
-    const MinuteSeries series = prices_of(folder, sweep);
-    const RunConfig config = config_of_task(folder, load_run_config(folder.base()), task);
-    const RunRecord record = record_of(sweep, task, config);
-    save_run_record({at}, record);
-    try {
-      RunStages({at}, record, series, log).finish();
-    } catch (const ProofFailed& failed) {
-      fmt::print(log, "{}\n", failed.what());
-    }
-    if (!record.is_lean()) return;
-    for (const auto& entry : fs::directory_iterator(at)) {
-      if (!kLeanFiles.contains(entry.path().filename().string())) fs::remove_all(entry.path());
-    }
-  });
-}
-
-namespace {
-
 struct Column {
   const char* name;  ///< in tasks.csv and, of the carried-over row, in a run's table
   int decimals;
@@ -240,6 +181,61 @@ std::string columns_of(const FoldedSettings& row) {
 }
 
 }  // namespace
+
+bool is_complete(const SweepFolder& folder, int task) {
+  return fs::exists(folder.result(task) / kRecord);
+}
+
+bool is_proved(const SweepFolder& folder, int task) {
+  return is_complete(folder, task) && fs::exists(folder.result(task) / kStudent);
+}
+
+bool complete_task(const SweepFolder& folder, int task, const TaskWork& work) {
+  if (is_complete(folder, task)) return false;
+  const Log log = open_log(folder.log(task));
+  std::error_code ignored;
+  try {
+    const fs::path own = make_own_folder(folder.parts(task));
+    work(own, log.get());
+    publish(folder, task, own);
+  } catch (const std::exception& error) {
+    if (!is_complete(folder, task)) {  // else another attempt completed first
+      fmt::print(log.get(), "{}{}\n", kFailedLine, error.what());
+      throw;
+    }
+  }
+  // Removes folders of dead and late attempts; concurrent removals may collide, hence the retries.
+  for (int tries = 0; tries < 10 && fs::exists(folder.parts(task), ignored); ++tries) {
+    fs::remove_all(folder.parts(task), ignored);
+  }
+  fs::remove(folder.log(task), ignored);
+  return true;
+}
+
+bool run_task(const SweepFolder& folder, int number) {
+  const SweepRecord sweep = load_own_sweep(folder);
+  const std::vector<SweepTask> tasks = load_tasks(folder);
+  if (number < 1 || number > std::ssize(tasks)) {
+    fail("no task {}: {} has {} tasks", number, folder.tasks().string(), tasks.size());
+  }
+  const SweepTask& task = tasks[static_cast<std::size_t>(number - 1)];
+  setenv("SOURCE_DATE_EPOCH", fmt::format("{}", sweep.date_utc_s).c_str(), 1);
+  return complete_task(folder, number, [&](const fs::path& at, std::FILE* log) {
+    const MinuteSeries series = prices_of(folder, sweep);
+    const RunConfig config = config_of_task(folder, load_run_config(folder.base()), task);
+    const RunRecord record = record_of(sweep, task, config);
+    save_run_record({at}, record);
+    try {
+      RunStages({at}, record, series, log).finish();
+    } catch (const ProofFailed& failed) {
+      fmt::print(log, "{}\n", failed.what());
+    }
+    if (!record.is_lean()) return;
+    for (const auto& entry : fs::directory_iterator(at)) {
+      if (!kLeanFiles.contains(entry.path().filename().string())) fs::remove_all(entry.path());
+    }
+  });
+}
 
 std::vector<CollectedTask> collect_tasks(const SweepFolder& folder,
                                          const std::vector<SweepTask>& tasks) {

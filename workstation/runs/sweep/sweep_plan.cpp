@@ -276,24 +276,6 @@ std::string joined(const Entries& settings, const char* between, const char* equ
   return text;
 }
 
-}  // namespace
-
-Entries SweepTask::without_seed_and_fold() const {
-  Entries kept = settings;
-  std::erase_if(kept, [](const auto& entry) {
-    return entry.first == setting::kSeed || entry.first == setting::kFold;
-  });
-  return kept;
-}
-
-std::string settings_text(const Entries& settings) { return joined(settings, "\t", "="); }
-
-std::string settings_shown(const Entries& settings) {
-  return settings.empty() ? "as configured" : joined(settings, ", ", " ");
-}
-
-namespace {
-
 std::string format_tasks(const std::vector<SweepTask>& tasks) {
   std::string text;
   for (const SweepTask& task : tasks) {
@@ -421,6 +403,20 @@ void require_same_sweep(const SweepPlan& plan) {
 }
 
 }  // namespace
+
+Entries SweepTask::without_seed_and_fold() const {
+  Entries kept = settings;
+  std::erase_if(kept, [](const auto& entry) {
+    return entry.first == setting::kSeed || entry.first == setting::kFold;
+  });
+  return kept;
+}
+
+std::string settings_text(const Entries& settings) { return joined(settings, "\t", "="); }
+
+std::string settings_shown(const Entries& settings) {
+  return settings.empty() ? "as configured" : joined(settings, ", ", " ");
+}
 
 SweepPlan plan_sweep(const SweepRequest& request, const SweepFolder& folder) {
   SweepPlan plan;

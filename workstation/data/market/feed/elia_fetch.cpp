@@ -56,38 +56,6 @@ bool is_near_real_time(std::string_view dataset) {
   return dataset == kToday.minutes || dataset == kToday.quarter_hours;
 }
 
-}  // namespace
-
-bool holds_minutes(std::string_view dataset) {
-  return dataset == kOld.minutes || dataset == kNew.minutes || dataset == kToday.minutes;
-}
-
-std::vector<FetchWindow> plan_fetch(const FetchSpan& span, std::int64_t now_utc_s) {
-  if (span.to < span.from) {
-    fail("--to {} is before --from {}; swap them", format_local_date(span.to),
-         format_local_date(span.from));
-  }
-  const LocalDate today = local_date_of(now_utc_s);
-  if (today < span.from) {
-    fail("--from {} is in the future; prices exist until today", format_local_date(span.from));
-  }
-  const LocalDate end = add_days(std::min(span.to, today), 1);
-  std::vector<FetchWindow> windows;
-  for (LocalDate from = span.from; from < end;) {
-    const LocalDate until = window_end(from, end, today);
-    const DatasetPair datasets = datasets_of(from, today);
-    const std::int64_t until_utc_s = local_midnight_utc_s(until);
-    const bool settles_later = until_utc_s > now_utc_s - kFillingDays * kSecondsPerDay;
-    for (const char* dataset : {datasets.minutes, datasets.quarter_hours}) {
-      windows.push_back({dataset, local_midnight_utc_s(from), until_utc_s, settles_later});
-    }
-    from = until;
-  }
-  return windows;
-}
-
-namespace {
-
 namespace fs = std::filesystem;
 
 /// The name includes the server, so that cached windows of different servers are distinct.
@@ -320,6 +288,34 @@ std::string provenance_of(const FetchRequest& request, const std::vector<Fetched
 }
 
 }  // namespace
+
+bool holds_minutes(std::string_view dataset) {
+  return dataset == kOld.minutes || dataset == kNew.minutes || dataset == kToday.minutes;
+}
+
+std::vector<FetchWindow> plan_fetch(const FetchSpan& span, std::int64_t now_utc_s) {
+  if (span.to < span.from) {
+    fail("--to {} is before --from {}; swap them", format_local_date(span.to),
+         format_local_date(span.from));
+  }
+  const LocalDate today = local_date_of(now_utc_s);
+  if (today < span.from) {
+    fail("--from {} is in the future; prices exist until today", format_local_date(span.from));
+  }
+  const LocalDate end = add_days(std::min(span.to, today), 1);
+  std::vector<FetchWindow> windows;
+  for (LocalDate from = span.from; from < end;) {
+    const LocalDate until = window_end(from, end, today);
+    const DatasetPair datasets = datasets_of(from, today);
+    const std::int64_t until_utc_s = local_midnight_utc_s(until);
+    const bool settles_later = until_utc_s > now_utc_s - kFillingDays * kSecondsPerDay;
+    for (const char* dataset : {datasets.minutes, datasets.quarter_hours}) {
+      windows.push_back({dataset, local_midnight_utc_s(from), until_utc_s, settles_later});
+    }
+    from = until;
+  }
+  return windows;
+}
 
 fs::path fetch_cache_folder(const FetchRequest& request) { return request.out.string() + ".fetch"; }
 

@@ -239,6 +239,32 @@ void add_period(const EntsoeElement& element, bool repeats, QuarterHourPrices& p
   }
 }
 
+void add_day_ahead_period(const EntsoeElement& element, bool repeats,
+                          std::vector<DayAheadRow>& rows) {
+  const EntsoePeriod period = entsoe_period_of(element);
+  std::vector<double> prices(static_cast<std::size_t>(period.positions), kNotPublished);
+  for (const EntsoeElement& point : element.children("Point")) {
+    const std::int64_t position = entsoe_position_of(point, period);
+    double& price = prices[static_cast<std::size_t>(position - 1)];
+    if (is_published(price)) {
+      fail("{}: position {} comes twice; download it again", point.place(), position);
+    }
+    price = entsoe_number_of<double>(point.required("price.amount"));
+  }
+  for (std::size_t p = 0; p < prices.size(); ++p) {
+    if (repeats && p > 0 && !is_published(prices[p])) prices[p] = prices[p - 1];
+    if (!is_published(prices[p])) continue;
+    rows.push_back({period.start_utc_s + static_cast<std::int64_t>(p) * period.step_s, prices[p],
+                    static_cast<int>(period.step_s / 60)});
+  }
+}
+
+std::int64_t sequence_of(const EntsoeElement& series) {
+  const EntsoeElement position =
+      series.child("classificationSequence_AttributeInstanceComponent.position");
+  return position.node ? entsoe_number_of<std::int64_t>(position) : 1;
+}
+
 }  // namespace
 
 bool looks_like_xml(std::string_view text) {
@@ -271,36 +297,6 @@ MarketRows parse_entsoe_xml(std::string_view text, std::string_view name) {
   }
   return rows;
 }
-
-namespace {
-
-void add_day_ahead_period(const EntsoeElement& element, bool repeats,
-                          std::vector<DayAheadRow>& rows) {
-  const EntsoePeriod period = entsoe_period_of(element);
-  std::vector<double> prices(static_cast<std::size_t>(period.positions), kNotPublished);
-  for (const EntsoeElement& point : element.children("Point")) {
-    const std::int64_t position = entsoe_position_of(point, period);
-    double& price = prices[static_cast<std::size_t>(position - 1)];
-    if (is_published(price)) {
-      fail("{}: position {} comes twice; download it again", point.place(), position);
-    }
-    price = entsoe_number_of<double>(point.required("price.amount"));
-  }
-  for (std::size_t p = 0; p < prices.size(); ++p) {
-    if (repeats && p > 0 && !is_published(prices[p])) prices[p] = prices[p - 1];
-    if (!is_published(prices[p])) continue;
-    rows.push_back({period.start_utc_s + static_cast<std::int64_t>(p) * period.step_s, prices[p],
-                    static_cast<int>(period.step_s / 60)});
-  }
-}
-
-std::int64_t sequence_of(const EntsoeElement& series) {
-  const EntsoeElement position =
-      series.child("classificationSequence_AttributeInstanceComponent.position");
-  return position.node ? entsoe_number_of<std::int64_t>(position) : 1;
-}
-
-}  // namespace
 
 DayAheadFile parse_entsoe_day_ahead(std::string_view text, std::string_view name) {
   const EntsoeSource source{text, name};

@@ -188,25 +188,6 @@ void parse_record(JsonValue record, std::string_view place, MarketRows& rows) {
   builder.finish(rows);
 }
 
-}  // namespace
-
-MarketRows parse_market_json(std::string_view text, std::string_view name) {
-  const Json json = Json::parse(text);
-  if (!json.value().exists()) {
-    fail("{}: not valid JSON, perhaps cut short; download it again", name);
-  }
-  MarketRows rows;
-  std::size_t number = 0;
-  std::string place;
-  for (const JsonValue record : find_records(json.value(), name)) {
-    place.assign(name).append(": record ").append(std::to_string(++number));
-    parse_record(record, place, rows);
-  }
-  return rows;
-}
-
-namespace {
-
 struct Columns {
   char separator;
   std::vector<std::optional<MarketField>> fields;
@@ -352,31 +333,6 @@ void add_own_rows(const std::vector<TextLine>& lines, const Columns& columns, st
   }
 }
 
-}  // namespace
-
-MarketRows parse_market_csv(std::string_view text, std::string_view name,
-                            const CustomCsvFormat& own) {
-  MarketRows rows;
-  std::optional<Columns> columns;
-  std::vector<TextLine> own_lines;
-  for (std::size_t number = 1; !text.empty(); ++number) {
-    const TextLine line{number, take_line(text)};
-    if (line.text.empty() || line.text[0] == '#') continue;
-    if (!columns) {
-      columns = parse_header(line.text, name, own);
-    } else if (columns->are_own) {
-      own_lines.push_back(line);
-    } else {
-      add_row(line, *columns, name, rows);
-    }
-  }
-  if (!columns) fail("{}: the file is empty; download it again", name);
-  if (!own_lines.empty()) add_own_rows(own_lines, *columns, name, rows);
-  return rows;
-}
-
-namespace {
-
 /// Sources named in the comments at the head, in the words of attribution_of() and the commands.
 std::set<MarketSource> sources_of(std::string_view text) {
   std::set<MarketSource> sources;
@@ -460,6 +416,42 @@ constexpr const char* kSourceWords[] = {
     "a file that does not name its source"};
 
 }  // namespace
+
+MarketRows parse_market_json(std::string_view text, std::string_view name) {
+  const Json json = Json::parse(text);
+  if (!json.value().exists()) {
+    fail("{}: not valid JSON, perhaps cut short; download it again", name);
+  }
+  MarketRows rows;
+  std::size_t number = 0;
+  std::string place;
+  for (const JsonValue record : find_records(json.value(), name)) {
+    place.assign(name).append(": record ").append(std::to_string(++number));
+    parse_record(record, place, rows);
+  }
+  return rows;
+}
+
+MarketRows parse_market_csv(std::string_view text, std::string_view name,
+                            const CustomCsvFormat& own) {
+  MarketRows rows;
+  std::optional<Columns> columns;
+  std::vector<TextLine> own_lines;
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    const TextLine line{number, take_line(text)};
+    if (line.text.empty() || line.text[0] == '#') continue;
+    if (!columns) {
+      columns = parse_header(line.text, name, own);
+    } else if (columns->are_own) {
+      own_lines.push_back(line);
+    } else {
+      add_row(line, *columns, name, rows);
+    }
+  }
+  if (!columns) fail("{}: the file is empty; download it again", name);
+  if (!own_lines.empty()) add_own_rows(own_lines, *columns, name, rows);
+  return rows;
+}
 
 MarketRows parse_market_text(std::string_view text, std::string_view name,
                              const CustomCsvFormat& own) {

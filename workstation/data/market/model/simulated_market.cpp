@@ -92,44 +92,6 @@ double recent_median(const std::vector<QuarterHour>& quarter_hours, std::size_t 
   return *middle;
 }
 
-}  // namespace
-
-std::size_t infer_missing_imbalances(std::vector<QuarterHour>& quarter_hours) {
-  std::size_t filled = 0;
-  for (std::size_t i = 0; i < quarter_hours.size(); ++i) {
-    QuarterHour& row = quarter_hours[i];
-    if (is_published(row.system_imbalance_mw) || !is_published(row.price_eur_per_mwh)) continue;
-    const bool shortage = row.price_eur_per_mwh > recent_median(quarter_hours, i);
-    row.system_imbalance_mw = shortage ? -kTypicalImbalance_mw : kTypicalImbalance_mw;
-    ++filled;
-  }
-  return filled;
-}
-
-MinuteSeries minutes_on_quarter_hours(const std::vector<QuarterHour>& quarter_hours,
-                                      std::uint64_t seed) {
-  MinuteSeries series;
-  series.start_utc_s = quarter_hours.front().utc_s;
-  const std::int64_t span_s =
-      quarter_hours.back().utc_s - series.start_utc_s + kSecondsPerQuarterHour;
-  series.indicative.assign(static_cast<std::size_t>(span_s / 60), kNotPublished);
-  series.settled = series.indicative;
-  MinutePathGenerator generator(seed);
-  for (const QuarterHour& quarter_hour : quarter_hours) {
-    if (!is_published(quarter_hour.price_eur_per_mwh)) continue;
-    const auto first = static_cast<std::ptrdiff_t>((quarter_hour.utc_s - series.start_utc_s) / 60);
-    std::fill_n(series.settled.begin() + first, kMinutesPerQuarterHour,
-                quarter_hour.price_eur_per_mwh);
-    if (!is_published(quarter_hour.system_imbalance_mw)) continue;
-    MinutePrices prices = generator.next(quarter_hour);
-    std::transform(prices.begin(), prices.end() - 1, prices.begin(), in_cents);
-    std::copy(prices.begin(), prices.end(), series.indicative.begin() + first);
-  }
-  return series;
-}
-
-namespace {
-
 /// Windows of the auction's forecast: adjacent hours and the day around them, on both sides.
 constexpr std::size_t kNearHours = 3, kDayHours = 12;
 constexpr double kNearForeseen = 0.12, kDayForeseen = 0.26;  ///< a, b
@@ -149,40 +111,6 @@ double mean_around(const std::vector<double>& hours, std::size_t h, std::size_t 
   for (std::size_t k = first; k < end; ++k) sum += hours[k];
   return sum / static_cast<double>(end - first);
 }
-
-}  // namespace
-
-DayAheadSeries simulate_day_ahead(const std::vector<QuarterHour>& quarter_hours,
-                                  std::uint64_t seed) {
-  std::vector<double> hours;
-  for (std::size_t q = 0; q + 4 <= quarter_hours.size(); q += 4) {
-    double sum = 0;
-    for (std::size_t k = q; k < q + 4; ++k) sum += quarter_hours[k].price_eur_per_mwh;
-    hours.push_back(sum / 4);
-  }
-  Random random(seed);
-  double days = random.normal(), within = random.normal();
-  DayAheadSeries series;
-  for (std::size_t h = 0; h < hours.size(); ++h) {
-    days = kDaysCorrelation * days +
-           std::sqrt(1 - kDaysCorrelation * kDaysCorrelation) * random.normal();
-    within = kHoursCorrelation * within +
-             std::sqrt(1 - kHoursCorrelation * kHoursCorrelation) * random.normal();
-    const double noise =
-        std::sqrt(kNoiseShareOfDays) * days + std::sqrt(1 - kNoiseShareOfDays) * within;
-    const std::int64_t utc_s = quarter_hours[4 * h].utc_s;
-    const auto hour = static_cast<std::size_t>(local_minute_of(utc_s).minute_of_day / 60);
-    const double foreseen = kNearForeseen * (mean_around(hours, h, kNearHours) - kSettledMean) +
-                            kDayForeseen * (mean_around(hours, h, kDayHours) - kSettledMean);
-    const double price = in_cents(kMean + kProfile[hour] + foreseen + kNoiseDeviation * noise);
-    for (int q = 0; q < 4; ++q) {
-      append_day_ahead(series, {utc_s + q * kSecondsPerQuarterHour, price, 60, 0});
-    }
-  }
-  return series;
-}
-
-namespace {
 
 constexpr std::int64_t kQuarterHoursPerYear = 365 * 96;
 
@@ -305,6 +233,70 @@ class YearSimulator {
 };
 
 }  // namespace
+
+std::size_t infer_missing_imbalances(std::vector<QuarterHour>& quarter_hours) {
+  std::size_t filled = 0;
+  for (std::size_t i = 0; i < quarter_hours.size(); ++i) {
+    QuarterHour& row = quarter_hours[i];
+    if (is_published(row.system_imbalance_mw) || !is_published(row.price_eur_per_mwh)) continue;
+    const bool shortage = row.price_eur_per_mwh > recent_median(quarter_hours, i);
+    row.system_imbalance_mw = shortage ? -kTypicalImbalance_mw : kTypicalImbalance_mw;
+    ++filled;
+  }
+  return filled;
+}
+
+MinuteSeries minutes_on_quarter_hours(const std::vector<QuarterHour>& quarter_hours,
+                                      std::uint64_t seed) {
+  MinuteSeries series;
+  series.start_utc_s = quarter_hours.front().utc_s;
+  const std::int64_t span_s =
+      quarter_hours.back().utc_s - series.start_utc_s + kSecondsPerQuarterHour;
+  series.indicative.assign(static_cast<std::size_t>(span_s / 60), kNotPublished);
+  series.settled = series.indicative;
+  MinutePathGenerator generator(seed);
+  for (const QuarterHour& quarter_hour : quarter_hours) {
+    if (!is_published(quarter_hour.price_eur_per_mwh)) continue;
+    const auto first = static_cast<std::ptrdiff_t>((quarter_hour.utc_s - series.start_utc_s) / 60);
+    std::fill_n(series.settled.begin() + first, kMinutesPerQuarterHour,
+                quarter_hour.price_eur_per_mwh);
+    if (!is_published(quarter_hour.system_imbalance_mw)) continue;
+    MinutePrices prices = generator.next(quarter_hour);
+    std::transform(prices.begin(), prices.end() - 1, prices.begin(), in_cents);
+    std::copy(prices.begin(), prices.end(), series.indicative.begin() + first);
+  }
+  return series;
+}
+
+DayAheadSeries simulate_day_ahead(const std::vector<QuarterHour>& quarter_hours,
+                                  std::uint64_t seed) {
+  std::vector<double> hours;
+  for (std::size_t q = 0; q + 4 <= quarter_hours.size(); q += 4) {
+    double sum = 0;
+    for (std::size_t k = q; k < q + 4; ++k) sum += quarter_hours[k].price_eur_per_mwh;
+    hours.push_back(sum / 4);
+  }
+  Random random(seed);
+  double days = random.normal(), within = random.normal();
+  DayAheadSeries series;
+  for (std::size_t h = 0; h < hours.size(); ++h) {
+    days = kDaysCorrelation * days +
+           std::sqrt(1 - kDaysCorrelation * kDaysCorrelation) * random.normal();
+    within = kHoursCorrelation * within +
+             std::sqrt(1 - kHoursCorrelation * kHoursCorrelation) * random.normal();
+    const double noise =
+        std::sqrt(kNoiseShareOfDays) * days + std::sqrt(1 - kNoiseShareOfDays) * within;
+    const std::int64_t utc_s = quarter_hours[4 * h].utc_s;
+    const auto hour = static_cast<std::size_t>(local_minute_of(utc_s).minute_of_day / 60);
+    const double foreseen = kNearForeseen * (mean_around(hours, h, kNearHours) - kSettledMean) +
+                            kDayForeseen * (mean_around(hours, h, kDayHours) - kSettledMean);
+    const double price = in_cents(kMean + kProfile[hour] + foreseen + kNoiseDeviation * noise);
+    for (int q = 0; q < 4; ++q) {
+      append_day_ahead(series, {utc_s + q * kSecondsPerQuarterHour, price, 60, 0});
+    }
+  }
+  return series;
+}
 
 std::vector<QuarterHour> simulate_quarter_hours(const UtcSpan& period, std::uint64_t seed) {
   YearSimulator simulator(seed);

@@ -29,6 +29,38 @@ std::int64_t usual_publication_utc_s(const LocalDate& delivery, int published_mi
                          .second = 0});
 }
 
+constexpr std::string_view kHeader =
+    "quarter_hour_utc,day_ahead_eur_mwh,resolution_min,published_utc";
+/// Gaps are stored, so a wrong date must not allocate centuries.
+constexpr std::int64_t kQuarterHoursMax = 40LL * 366 * 96;
+
+DayAheadRow parse_row(std::string_view line, std::string_view name, std::size_t line_number) {
+  const auto bad = [&](std::string_view what) -> void {
+    fail("{}:{}: {}: \"{}\"; expected e.g. 2025-06-01T10:00:00Z,41.5,60,", name, line_number, what,
+         one_line(line, 80));
+  };
+  std::string_view time, price, resolution, published, more;
+  CsvFields fields(line);
+  const bool four = fields.take(time) && fields.take(price) && fields.take(resolution) &&
+                    fields.take(published) && !fields.take(more);
+  if (!four) bad("not four columns");
+  DayAheadRow row{};
+  if (!parse_utc(time, row.utc_s, kAlsoBlank) || row.utc_s % kSecondsPerQuarterHour != 0) {
+    bad("not the UTC start of a quarter-hour");
+  }
+  if (!read_number(price, row.eur_per_mwh) || !std::isfinite(row.eur_per_mwh)) {
+    bad("price is not a number");
+  }
+  const bool known =
+      read_number(resolution, row.resolution_min) &&
+      (row.resolution_min == 15 || row.resolution_min == 30 || row.resolution_min == 60);
+  if (!known) bad("resolution is not 15, 30 or 60 minutes");
+  if (!published.empty() && !parse_utc(published, row.published_utc_s, kAlsoBlank)) {
+    bad("not the UTC time of its publication");
+  }
+  return row;
+}
+
 }  // namespace
 
 DayAheadPublication::DayAheadPublication(DayAheadSeries series, int published_min)
@@ -66,42 +98,6 @@ std::int64_t DayAheadPublication::next_known_utc_s(std::int64_t from_utc_s,
   }
   return next;
 }
-
-namespace {
-
-constexpr std::string_view kHeader =
-    "quarter_hour_utc,day_ahead_eur_mwh,resolution_min,published_utc";
-/// Gaps are stored, so a wrong date must not allocate centuries.
-constexpr std::int64_t kQuarterHoursMax = 40LL * 366 * 96;
-
-DayAheadRow parse_row(std::string_view line, std::string_view name, std::size_t line_number) {
-  const auto bad = [&](std::string_view what) -> void {
-    fail("{}:{}: {}: \"{}\"; expected e.g. 2025-06-01T10:00:00Z,41.5,60,", name, line_number, what,
-         one_line(line, 80));
-  };
-  std::string_view time, price, resolution, published, more;
-  CsvFields fields(line);
-  const bool four = fields.take(time) && fields.take(price) && fields.take(resolution) &&
-                    fields.take(published) && !fields.take(more);
-  if (!four) bad("not four columns");
-  DayAheadRow row{};
-  if (!parse_utc(time, row.utc_s, kAlsoBlank) || row.utc_s % kSecondsPerQuarterHour != 0) {
-    bad("not the UTC start of a quarter-hour");
-  }
-  if (!read_number(price, row.eur_per_mwh) || !std::isfinite(row.eur_per_mwh)) {
-    bad("price is not a number");
-  }
-  const bool known =
-      read_number(resolution, row.resolution_min) &&
-      (row.resolution_min == 15 || row.resolution_min == 30 || row.resolution_min == 60);
-  if (!known) bad("resolution is not 15, 30 or 60 minutes");
-  if (!published.empty() && !parse_utc(published, row.published_utc_s, kAlsoBlank)) {
-    bad("not the UTC time of its publication");
-  }
-  return row;
-}
-
-}  // namespace
 
 bool append_day_ahead(DayAheadSeries& series, const DayAheadRow& price) {
   if (series.size() == 0) series.start_utc_s = price.utc_s;

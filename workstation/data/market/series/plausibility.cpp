@@ -325,44 +325,6 @@ Column minute_column(const char* name, const std::vector<double>& prices,
                           kUnusualPriceMaxEurPerMwh, is_sentinel});
 }
 
-}  // namespace
-
-std::vector<Finding> implausible(const MinuteSeries& series) {
-  if (series.size() == 0) return {};
-  const Column settled = minute_column("settled", series.settled, series.start_utc_s);
-  const Column indicative = minute_column("indicative", series.indicative, series.start_utc_s);
-  Findings findings;
-  const auto check_both = [&](Check check) {
-    check(settled, findings);
-    check(indicative, findings);
-  };
-  check_dates(settled, findings);
-  for (const Check check : {check_row_step, check_constant, check_sentinels,
-                            check_frequent_sentinels, check_unit, check_range, check_unusual}) {
-    check_both(check);
-  }
-  check_settled_changes(series, settled, findings);
-  check_both(check_frozen);
-  check_copied(settled, indicative, findings);
-  check_both(check_gaps);
-  return std::move(findings.all);
-}
-
-std::vector<Finding> implausible_end(std::string_view text, const MinuteSeries& series) {
-  if (text.empty() || text.ends_with('\n') || series.size() == 0) return {};
-  const std::size_t last = series.size() - 1;
-  const bool first_of_quarter_hour = series.utc_s(last) % kSecondsPerQuarterHour == 0;
-  const bool contradicts = last > 0 && !first_of_quarter_hour &&
-                           is_published(series.settled[last - 1]) &&
-                           !(series.settled[last] == series.settled[last - 1]);
-  return {{"cut-end", contradicts,
-           "the last row does not end with a line end: file cut off? download it again, or "
-           "delete the row",
-           series.utc_s(last)}};
-}
-
-namespace {
-
 constexpr std::size_t kDayOfPrices = 96;
 constexpr std::size_t kSharedMin = 80 * kDayOfPrices;  ///< fewer may mislead
 constexpr double kCorrelationMore = 0.02;              ///< of a shift
@@ -405,24 +367,6 @@ void check_days(const DayAheadSeries& series, const Column& column, Findings& fi
   }
 }
 
-}  // namespace
-
-std::vector<Finding> implausible_day_ahead(const DayAheadSeries& series) {
-  if (series.size() == 0) return {};
-  const Column column = with_statistics(
-      {"day-ahead", series.eur_per_mwh, series.start_utc_s, kSecondsPerQuarterHour, "quarter-hour",
-       kAuctionMinEurPerMwh, kAuctionMaxEurPerMwh, is_day_ahead_sentinel});
-  Findings findings;
-  for (const Check check :
-       {check_dates, check_sentinels, check_range, check_unusual, check_constant, check_unit}) {
-    check(column, findings);
-  }
-  check_days(series, column, findings);
-  return std::move(findings.all);
-}
-
-namespace {
-
 struct SharedPrices {
   std::size_t count = 0;
   double correlation = kNotPublished;
@@ -452,6 +396,54 @@ SharedPrices compare(const DayAheadSeries& day_ahead, const MinuteSeries& settle
 }
 
 }  // namespace
+
+std::vector<Finding> implausible(const MinuteSeries& series) {
+  if (series.size() == 0) return {};
+  const Column settled = minute_column("settled", series.settled, series.start_utc_s);
+  const Column indicative = minute_column("indicative", series.indicative, series.start_utc_s);
+  Findings findings;
+  const auto check_both = [&](Check check) {
+    check(settled, findings);
+    check(indicative, findings);
+  };
+  check_dates(settled, findings);
+  for (const Check check : {check_row_step, check_constant, check_sentinels,
+                            check_frequent_sentinels, check_unit, check_range, check_unusual}) {
+    check_both(check);
+  }
+  check_settled_changes(series, settled, findings);
+  check_both(check_frozen);
+  check_copied(settled, indicative, findings);
+  check_both(check_gaps);
+  return std::move(findings.all);
+}
+
+std::vector<Finding> implausible_end(std::string_view text, const MinuteSeries& series) {
+  if (text.empty() || text.ends_with('\n') || series.size() == 0) return {};
+  const std::size_t last = series.size() - 1;
+  const bool first_of_quarter_hour = series.utc_s(last) % kSecondsPerQuarterHour == 0;
+  const bool contradicts = last > 0 && !first_of_quarter_hour &&
+                           is_published(series.settled[last - 1]) &&
+                           !(series.settled[last] == series.settled[last - 1]);
+  return {{"cut-end", contradicts,
+           "the last row does not end with a line end: file cut off? download it again, or "
+           "delete the row",
+           series.utc_s(last)}};
+}
+
+std::vector<Finding> implausible_day_ahead(const DayAheadSeries& series) {
+  if (series.size() == 0) return {};
+  const Column column = with_statistics(
+      {"day-ahead", series.eur_per_mwh, series.start_utc_s, kSecondsPerQuarterHour, "quarter-hour",
+       kAuctionMinEurPerMwh, kAuctionMaxEurPerMwh, is_day_ahead_sentinel});
+  Findings findings;
+  for (const Check check :
+       {check_dates, check_sentinels, check_range, check_unusual, check_constant, check_unit}) {
+    check(column, findings);
+  }
+  check_days(series, column, findings);
+  return std::move(findings.all);
+}
 
 double day_ahead_correlation(const DayAheadSeries& day_ahead, const MinuteSeries& settled,
                              int days_later) {

@@ -92,92 +92,6 @@ struct FlipCount {
   }
 };
 
-}  // namespace
-
-double quantile_of_sorted(std::span<const double> sorted, double probability) {
-  const double position = probability * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(position);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (position - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-}
-
-PriceStatistics price_statistics(std::span<const double> settled) {
-  const std::vector<double> sorted = sorted_published(settled);
-  PriceStatistics result{.count = sorted.size()};
-  if (sorted.empty()) return result;
-  result.mean =
-      std::accumulate(sorted.begin(), sorted.end(), 0.0) / static_cast<double>(sorted.size());
-  result.minimum = sorted.front();
-  result.quartile_1 = quantile_of_sorted(sorted, 0.25);
-  result.median = quantile_of_sorted(sorted, 0.5);
-  result.quartile_3 = quantile_of_sorted(sorted, 0.75);
-  result.maximum = sorted.back();
-  result.share_below_minus_200 = share_of(sorted, [](double price) { return price < -200; });
-  result.share_below_0 = share_of(sorted, [](double price) { return price < 0; });
-  result.share_above_1000 = share_of(sorted, [](double price) { return price > 1000; });
-  for (std::size_t i = 0; i < kAutocorrelationLags.size(); ++i) {
-    result.autocorrelation[i] =
-        autocorrelation_at(settled, static_cast<std::size_t>(kAutocorrelationLags[i]));
-  }
-  FlipCount flips;
-  for (std::size_t q = 1; q < settled.size(); ++q) {
-    if (!is_published(settled[q - 1]) || !is_published(settled[q])) continue;
-    flips.add(settled[q - 1] < 0, settled[q] < 0);
-  }
-  result.sign_flip_rate = flips.rate();
-  return result;
-}
-
-std::vector<double> settled_by_quarter_hour(const MinuteSeries& series) {
-  const std::int64_t first = series.start_utc_s / kSecondsPerQuarterHour;
-  std::vector<double> settled;
-  for (std::size_t m = 0; m < series.size(); ++m) {
-    const auto q = static_cast<std::size_t>(series.utc_s(m) / kSecondsPerQuarterHour - first);
-    if (q >= settled.size()) settled.resize(q + 1, kNotPublished);
-    if (is_published(series.settled[m])) settled[q] = series.settled[m];
-  }
-  return settled;
-}
-
-ConvergenceByMinute convergence_by_minute(const MinuteSeries& series) {
-  std::array<std::vector<double>, kMinutesPerQuarterHour> errors;
-  for (std::size_t m = 0; m < series.size(); ++m) {
-    const double error = std::abs(series.indicative[m] - series.settled[m]);
-    const auto minute_of_quarter_hour =
-        static_cast<std::size_t>(series.utc_s(m) % kSecondsPerQuarterHour / 60);
-    if (is_published(error)) errors[minute_of_quarter_hour].push_back(error);
-  }
-  ConvergenceByMinute result{};
-  for (std::size_t minute_of_quarter_hour = 0; minute_of_quarter_hour < errors.size();
-       ++minute_of_quarter_hour) {
-    std::vector<double>& of_minute = errors[minute_of_quarter_hour];
-    if (of_minute.empty()) continue;
-    std::sort(of_minute.begin(), of_minute.end());
-    result[minute_of_quarter_hour] = {
-        .count = of_minute.size(),
-        .median_error = quantile_of_sorted(of_minute, 0.5),
-        .mean_error = std::accumulate(of_minute.begin(), of_minute.end(), 0.0) /
-                      static_cast<double>(of_minute.size())};
-  }
-  return result;
-}
-
-double imbalance_sign_flip_rate(const std::vector<QuarterHour>& quarter_hours) {
-  FlipCount count;
-  for (std::size_t i = 1; i < quarter_hours.size(); ++i) {
-    const QuarterHour& before = quarter_hours[i - 1];
-    const QuarterHour& after = quarter_hours[i];
-    if (after.utc_s - before.utc_s != kSecondsPerQuarterHour ||
-        !is_published(before.system_imbalance_mw) || !is_published(after.system_imbalance_mw)) {
-      continue;
-    }
-    count.add(is_short(before.system_imbalance_mw), is_short(after.system_imbalance_mw));
-  }
-  return count.pairs > 0 ? count.rate() : kNotPublished;
-}
-
-namespace {
-
 /// The part that minutes and quarter-hours share; `settled` as for regime_statistics().
 MarketStatistics statistics_of(std::int64_t from_utc_s, std::int64_t until_utc_s,
                                std::span<const double> settled) {
@@ -189,34 +103,6 @@ MarketStatistics statistics_of(std::int64_t from_utc_s, std::int64_t until_utc_s
   result.clock_changes = clock_changes_between(from_utc_s, until_utc_s);
   return result;
 }
-
-}  // namespace
-
-MarketStatistics statistics_of_minutes(const MinuteSeries& series) {
-  MarketStatistics result = statistics_of(series.start_utc_s, series.utc_s(series.size()),
-                                          settled_by_quarter_hour(series));
-  result.convergence = convergence_by_minute(series);
-  result.settled_gaps = gaps_in(series.settled, series.start_utc_s, 60);
-  result.indicative_gaps = gaps_in(series.indicative, series.start_utc_s, 60);
-  return result;
-}
-
-MarketStatistics statistics_of_quarter_hours(const std::vector<QuarterHour>& quarter_hours) {
-  const std::int64_t from_utc_s = quarter_hours.front().utc_s;
-  const auto index_of = [from_utc_s](const QuarterHour& row) {
-    return static_cast<std::size_t>((row.utc_s - from_utc_s) / kSecondsPerQuarterHour);
-  };
-  std::vector<double> settled(index_of(quarter_hours.back()) + 1, kNotPublished);
-  for (const QuarterHour& row : quarter_hours) settled[index_of(row)] = row.price_eur_per_mwh;
-  MarketStatistics result =
-      statistics_of(from_utc_s, quarter_hours.back().utc_s + kSecondsPerQuarterHour, settled);
-  const double flips = imbalance_sign_flip_rate(quarter_hours);
-  if (is_published(flips)) result.imbalance_sign_flip_rate = flips;
-  result.settled_gaps = gaps_in(settled, from_utc_s, kSecondsPerQuarterHour);
-  return result;
-}
-
-namespace {
 
 std::string format_price_text(std::string_view what, const PriceStatistics& price) {
   std::string text = fmt::format("{}, EUR/MWh, {}\n", what, counted(price.count, "quarter-hour"));
@@ -331,6 +217,112 @@ Json clock_changes_json(const std::vector<ClockChange>& changes) {
 }
 
 }  // namespace
+
+double quantile_of_sorted(std::span<const double> sorted, double probability) {
+  const double position = probability * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(position);
+  const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  return sorted[below] + (position - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+}
+
+PriceStatistics price_statistics(std::span<const double> settled) {
+  const std::vector<double> sorted = sorted_published(settled);
+  PriceStatistics result{.count = sorted.size()};
+  if (sorted.empty()) return result;
+  result.mean =
+      std::accumulate(sorted.begin(), sorted.end(), 0.0) / static_cast<double>(sorted.size());
+  result.minimum = sorted.front();
+  result.quartile_1 = quantile_of_sorted(sorted, 0.25);
+  result.median = quantile_of_sorted(sorted, 0.5);
+  result.quartile_3 = quantile_of_sorted(sorted, 0.75);
+  result.maximum = sorted.back();
+  result.share_below_minus_200 = share_of(sorted, [](double price) { return price < -200; });
+  result.share_below_0 = share_of(sorted, [](double price) { return price < 0; });
+  result.share_above_1000 = share_of(sorted, [](double price) { return price > 1000; });
+  for (std::size_t i = 0; i < kAutocorrelationLags.size(); ++i) {
+    result.autocorrelation[i] =
+        autocorrelation_at(settled, static_cast<std::size_t>(kAutocorrelationLags[i]));
+  }
+  FlipCount flips;
+  for (std::size_t q = 1; q < settled.size(); ++q) {
+    if (!is_published(settled[q - 1]) || !is_published(settled[q])) continue;
+    flips.add(settled[q - 1] < 0, settled[q] < 0);
+  }
+  result.sign_flip_rate = flips.rate();
+  return result;
+}
+
+std::vector<double> settled_by_quarter_hour(const MinuteSeries& series) {
+  const std::int64_t first = series.start_utc_s / kSecondsPerQuarterHour;
+  std::vector<double> settled;
+  for (std::size_t m = 0; m < series.size(); ++m) {
+    const auto q = static_cast<std::size_t>(series.utc_s(m) / kSecondsPerQuarterHour - first);
+    if (q >= settled.size()) settled.resize(q + 1, kNotPublished);
+    if (is_published(series.settled[m])) settled[q] = series.settled[m];
+  }
+  return settled;
+}
+
+ConvergenceByMinute convergence_by_minute(const MinuteSeries& series) {
+  std::array<std::vector<double>, kMinutesPerQuarterHour> errors;
+  for (std::size_t m = 0; m < series.size(); ++m) {
+    const double error = std::abs(series.indicative[m] - series.settled[m]);
+    const auto minute_of_quarter_hour =
+        static_cast<std::size_t>(series.utc_s(m) % kSecondsPerQuarterHour / 60);
+    if (is_published(error)) errors[minute_of_quarter_hour].push_back(error);
+  }
+  ConvergenceByMinute result{};
+  for (std::size_t minute_of_quarter_hour = 0; minute_of_quarter_hour < errors.size();
+       ++minute_of_quarter_hour) {
+    std::vector<double>& of_minute = errors[minute_of_quarter_hour];
+    if (of_minute.empty()) continue;
+    std::sort(of_minute.begin(), of_minute.end());
+    result[minute_of_quarter_hour] = {
+        .count = of_minute.size(),
+        .median_error = quantile_of_sorted(of_minute, 0.5),
+        .mean_error = std::accumulate(of_minute.begin(), of_minute.end(), 0.0) /
+                      static_cast<double>(of_minute.size())};
+  }
+  return result;
+}
+
+double imbalance_sign_flip_rate(const std::vector<QuarterHour>& quarter_hours) {
+  FlipCount count;
+  for (std::size_t i = 1; i < quarter_hours.size(); ++i) {
+    const QuarterHour& before = quarter_hours[i - 1];
+    const QuarterHour& after = quarter_hours[i];
+    if (after.utc_s - before.utc_s != kSecondsPerQuarterHour ||
+        !is_published(before.system_imbalance_mw) || !is_published(after.system_imbalance_mw)) {
+      continue;
+    }
+    count.add(is_short(before.system_imbalance_mw), is_short(after.system_imbalance_mw));
+  }
+  return count.pairs > 0 ? count.rate() : kNotPublished;
+}
+
+MarketStatistics statistics_of_minutes(const MinuteSeries& series) {
+  MarketStatistics result = statistics_of(series.start_utc_s, series.utc_s(series.size()),
+                                          settled_by_quarter_hour(series));
+  result.convergence = convergence_by_minute(series);
+  result.settled_gaps = gaps_in(series.settled, series.start_utc_s, 60);
+  result.indicative_gaps = gaps_in(series.indicative, series.start_utc_s, 60);
+  return result;
+}
+
+MarketStatistics statistics_of_quarter_hours(const std::vector<QuarterHour>& quarter_hours) {
+  const std::int64_t from_utc_s = quarter_hours.front().utc_s;
+  const auto index_of = [from_utc_s](const QuarterHour& row) {
+    return static_cast<std::size_t>((row.utc_s - from_utc_s) / kSecondsPerQuarterHour);
+  };
+  std::vector<double> settled(index_of(quarter_hours.back()) + 1, kNotPublished);
+  for (const QuarterHour& row : quarter_hours) settled[index_of(row)] = row.price_eur_per_mwh;
+  MarketStatistics result =
+      statistics_of(from_utc_s, quarter_hours.back().utc_s + kSecondsPerQuarterHour, settled);
+  const double flips = imbalance_sign_flip_rate(quarter_hours);
+  if (is_published(flips)) result.imbalance_sign_flip_rate = flips;
+  result.settled_gaps = gaps_in(settled, from_utc_s, kSecondsPerQuarterHour);
+  return result;
+}
 
 std::string format_statistics_text(const MarketStatistics& statistics, std::string_view what) {
   std::string text = fmt::format("{} to {}\n", utc_text(statistics.from_utc_s).view(),
