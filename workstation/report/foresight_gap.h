@@ -96,7 +96,7 @@ std::vector<DayLoss> foresight_gap(const MarketSteps& market, const std::vector<
                                    const LossChain& chain, const BatteryParameters& battery,
                                    double initial_soc_frac);
 
-// Page section on the profit gap (foresight_gap_page.cpp): by cause, by hour and month, and the
+// Page section on the profit gap: by cause, by hour and month, and the
 // worst days.
 
 struct RunResults;

@@ -12,7 +12,7 @@
 
 namespace bess {
 
-// Archive of steps (step_archive.cpp): prices, and actions of each policy; page/archive.js unpacks
+// Archive of steps: prices, and actions of each policy; page/archive.js unpacks
 // it. A day is one block of consecutive little-endian arrays:
 //
 //   minute int32 (UTC, since 1970) | observed int32 (hundredths of EUR/MWh, as the edge reads it)

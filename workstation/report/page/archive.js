@@ -1,4 +1,4 @@
-// Steps of the days, packed by step_archive.cpp: zlib, base64, one block per day.
+// Steps of the days, packed by page_data.cpp: zlib, base64, one block per day.
 "use strict";
 
 /** Bytes of a deflated base64 text. */

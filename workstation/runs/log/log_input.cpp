@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 
 #include "shared/host/csv.h"
 #include "shared/host/file.h"
@@ -13,7 +14,13 @@
 #include "shared/host/user_error.h"
 #include "shared/local_time.h"
 #include "shared/units_and_limits.h"
+#include "shared/utc_text.h"
+#include "workstation/base/answer.h"
+#include "workstation/correction/student/student_policy.h"
+#include "workstation/data/env/evaluate.h"
 #include "workstation/data/market/series/local_date.h"
+#include "workstation/policy/planners/baselines.h"
+#include "workstation/report/figures/html.h"
 #include "workstation/runs/chain/run_config.h"
 
 namespace bess {
@@ -67,6 +74,81 @@ void report_log(const std::string& file, const CycleLog& log, const std::vector<
   report_count(log.torn, "last line", "without a line end: ignored");
   report_count(log.duplicates, "row", "with a duplicate time: ignored");
   report_count(missing, "tick", "without a row: energy estimated from the state of charge");
+}
+
+NamedEvaluation run(const std::string& name, const ReadLog& read, double soc_frac, Policy& policy,
+                    ContextKind context) {
+  const MarketSteps market = market_of_log(read.log, read.prices, read.span, context);
+  return {name,
+          {},
+          evaluate(market, market.days, policy, {read.battery, soc_frac, true}),
+          policy.description()};
+}
+
+NamedEvaluation run_named(const std::string& name, const ReadLog& read, double soc_frac) {
+  const Baseline* baseline = find_baseline(name);
+  if (baseline != nullptr && baseline->is_for(kFitted)) {
+    fail("--policy {} needs fitting: use bess-train evaluate on the prices of these days", name);
+  }
+  if (const auto policy = make_baseline(name, {}, read.battery)) {
+    return run(name, read, soc_frac, *policy, ContextKind::kLevel);
+  }
+  const StudentFile student = student_for_log(name);
+  return run(name, read, soc_frac, *exported_policy(student), student.net.context.kind);
+}
+
+std::size_t index(Action action) { return static_cast<std::size_t>(action); }
+
+void compare(const LoggedCycle& c, Action now, double cycle_mwh, ReplayedDay& day,
+             LogReplay& replay) {
+  ++day.compared;
+  ++replay.decisions[index(*c.student)][index(now)];
+  if (*c.student == now) return;
+  replay.others.push_back({c.utc_s, c.decided_eur_per_mwh, c.soc_frac, *c.student, now});
+  const double more_mwh = (power_sign(now) - power_sign(*c.student)) * cycle_mwh;
+  ++day.differing;
+  day.mwh_moved += more_mwh;
+  day.gained_eur -= more_mwh * c.price_eur_per_mwh;
+}
+
+std::vector<std::string> day_row(const std::string& name, const ExchangedDay& day) {
+  const QuarterHourMoney& money = day.money;
+  return {name,
+          fmt::format("{:.3f}", day.charged_wh / 1'000),
+          fmt::format("{:.3f}", day.discharged_wh / 1'000),
+          fmt::format("{:.2f}", money.earned_eur),
+          fmt::format("{:.2f}", money.contract_eur),
+          fmt::format("{:.2f}", money.net_eur()),
+          fmt::format("{} / {} / {}", money.quarter_hours, money.published, money.validated)};
+}
+
+std::string notes(const ExchangedDay& all, double stored_kwh) {
+  const QuarterHourMoney& money = all.money;
+  std::string text = fmt::format(
+      "<p>{} of {} quarter-hours have their settled price, {} of them validated; the others have "
+      "the last price of their minutes",
+      money.published, money.quarter_hours, money.validated);
+  if (money.unpriced > 0) text += fmt::format(", and {} have none", money.unpriced);
+  return text +
+         fmt::format(
+             ": {:.2f} EUR is an estimate. Before validation a settled price may still change. "
+             "Unmetered energy (estimated from the SoC): {:.3f} kWh. Change of the stored energy: "
+             "{:.3f} kWh. Taxes are included only as [costs] of the configuration contains "
+             "them.</p>\n",
+             money.estimated_eur, all.unseen_wh / 1'000, stored_kwh);
+}
+
+std::string contract_table(const BatteryParameters& battery) {
+  const TradingCosts& costs = battery.costs;
+  const auto eur = [](double value) { return fmt::format("{:g} EUR per MWh traded", value); };
+  const auto percent = [](double value) { return fmt::format("{:g} %", value); };
+  return format_table({"Contract terms in addition to the price",
+                       {"Term", "Value"},
+                       {{"surcharge on imports", eur(costs.import_adder_eur_per_mwh)},
+                        {"surcharge, of the absolute price", percent(costs.import_percent)},
+                        {"fee on exports", eur(costs.export_fee_eur_per_mwh)},
+                        {"fee, of the absolute price", percent(costs.export_percent)},
+                        {"wear, imports and exports", eur(battery.wear_eur_per_mwh)}}});
 }
 
 }  // namespace
@@ -246,6 +328,152 @@ StudentFile student_for_log(const std::string& name) {
                                            : load_student(is_run ? name + "/student.json" : name);
   student.outlook = nullptr;
   return student;
+}
+
+std::vector<NamedEvaluation> compare_log(const ReadLog& read,
+                                         const std::vector<std::string>& policies) {
+  const MarketSteps market = market_of_log(read.log, read.prices, read.span, ContextKind::kLevel);
+  if (market.steps.empty())
+    fail("the log has no control cycle with a price on these days; change --from or --to");
+  std::vector<NamedEvaluation> all{{kThisBattery, {}, evaluation_of(read.days, read.battery)}};
+  const double soc_frac = all.front().carried_over.days.front().soc_start_frac;
+  for (const std::string& name : policies) all.push_back(run_named(name, read, soc_frac));
+  all.push_back(run_named(kForesightName, read, soc_frac));
+  const double mean_eur_per_mwh = mean_settled_eur_per_mwh(market, market.days);
+  for (NamedEvaluation& one : all) {
+    value_charge_left(one.carried_over, read.battery, mean_eur_per_mwh);
+  }
+  return all;
+}
+
+NetEarnings net_earnings_of(const Evaluation& evaluation) {
+  NetEarnings paid{};
+  for (const DayResult& day : evaluation.days) {
+    paid.paid_eur += day.profit_eur - day.charge_value_eur;
+    paid.charge_eur += day.charge_value_eur;
+  }
+  return paid;
+}
+
+LogReplay replay_log(const CycleLog& log, const LoggedSpan& span, const StudentNet& student) {
+  const double cycle_mwh = most_ordered_w(log) * kHoursPerStep / kWattsPerMegawatt;
+  const ContextKind context = student.context.kind;
+  const StudentPolicy policy(student);
+  LogReplay replay;
+  replay.student_hash = student_weights_hash(student);
+  std::map<std::int32_t, ReplayedDay> days;
+  for (const LoggedCycle& c : log.cycles) {
+    const LocalMinute local = local_minute_of(c.utc_s);
+    if (!span.holds(local_day_of(local)) || !c.has_reading || !c.has_price) continue;
+    ReplayedDay& day = days[local_day_of(local)];
+    day.date = format_local_date({local.year, local.month, local.day});
+    day.prices_eur_per_mwh += c.price_eur_per_mwh;
+    ++day.priced;
+    if (!c.student) continue;
+    if (context == ContextKind::kOutlook && !c.break_even_centi) {
+      ++replay.without_context;
+      continue;
+    }
+    compare(c, policy.decide(step_of(c, context), 0, c.soc_frac), cycle_mwh, day, replay);
+  }
+  for (auto& [date, day] : days) {
+    if (day.compared == 0) continue;
+    day.gained_eur += day.mwh_moved * day.prices_eur_per_mwh / day.priced;
+    replay.compared += day.compared;
+    replay.differing += day.differing;
+    replay.gained_eur += day.gained_eur;
+    replay.days.push_back(std::move(day));
+  }
+  if (replay.compared > 0) return replay;
+  if (replay.without_context > 0) {
+    fail(
+        "the student decides by the outlook, but none of the {} logged decisions has one: use a "
+        "log of a controller with [outlook]",
+        replay.without_context);
+  }
+  fail("the log has no decision of a student on these days; change --from or --to");
+}
+
+std::string LogReplay::text() const {
+  std::string text =
+      fmt::format("student {:08x} changes {} of {} decisions ({:.2f} %), worth about {:+.2f} EUR\n",
+                  student_hash, differing, compared, differing_percent(), gained_eur);
+  for (const Action before : {Action::kDischarge, Action::kIdle, Action::kCharge}) {
+    for (const Action now : {Action::kDischarge, Action::kIdle, Action::kCharge}) {
+      const int cycles = decisions[index(before)][index(now)];
+      if (before == now || cycles == 0) continue;
+      text += fmt::format("{:<9} -> {:<9} {:6}\n", action_name(before), action_name(now), cycles);
+    }
+  }
+  if (without_context > 0)
+    text += fmt::format("{} control cycles without an outlook\n", without_context);
+  if (differing == 0) return text;
+  const ReplayedDay& worst = *std::ranges::min_element(days, {}, &ReplayedDay::gained_eur);
+  return text +
+         fmt::format(
+             "worst day  {}: {} of {}, {:+.2f} EUR\n"
+             "estimate: each decision alone, full power for two minutes, offset at the day's "
+             "mean price\n",
+             worst.date, worst.differing, worst.compared, worst.gained_eur);
+}
+
+Json LogReplay::json() const {
+  Json json = answer("log_replay", {{"weights_hash", fmt::format("{:08x}", student_hash)},
+                                    {"compared", compared},
+                                    {"differing", differing},
+                                    {"differing_percent", Decimals{differing_percent(), 4}},
+                                    {"without_context", without_context},
+                                    {"gained_eur", Decimals{gained_eur, 4}}});
+  json.set("days", Json::list_from(days, [](const ReplayedDay& day) {
+             return Json::object({{"date", day.date},
+                                  {"compared", day.compared},
+                                  {"differing", day.differing},
+                                  {"gained_eur", Decimals{day.gained_eur, 4}}});
+           }));
+  json.set("others", Json::list_from(others, [](const ReplayedCycle& other) {
+             return Json::object({{"utc", utc_text(other.utc_s).view()},
+                                  {"price_eur_per_mwh", Decimals{other.price_eur_per_mwh, 2}},
+                                  {"soc_percent", Decimals{100 * other.soc_frac, 2}},
+                                  {"before", action_name(other.before)},
+                                  {"now", action_name(other.now)}});
+           }));
+  return json;
+}
+
+std::string statement_page(const std::vector<LoggedDay>& days, const BatteryParameters& battery) {
+  ExchangedDay all;
+  std::map<std::string, int> stopped;
+  HtmlTable table{"This battery by day",
+                  {"Day", "Charged, kWh", "Discharged, kWh", "At quarter-hour prices, EUR",
+                   "Contract, EUR", "Net, EUR", "Quarter-hours / settled / validated"},
+                  {}};
+  HtmlTable stops{"Control cycles not decided by the student", {"Reason", "Cycles"}, {}};
+  int cycles = 0, driven = 0, missing = 0;
+  for (const LoggedDay& day : days) {
+    table.rows.push_back(day_row(day.date, day.exchanged));
+    all.add(day.exchanged);
+    cycles += day.cycles;
+    driven += day.driven_cycles;
+    missing += day.missing;
+    for (const auto& [reason, count] : day.stopped) stopped[reason] += count;
+  }
+  table.rows.push_back(day_row("total", all));
+  for (const auto& [reason, count] : stopped) {
+    stops.rows.push_back({reason, fmt::format("{}", count)});
+  }
+  const Evaluation evaluation = evaluation_of(days, battery);
+  const double stored_kwh =
+      (evaluation.days.back().soc_end_frac - evaluation.days.front().soc_start_frac) *
+      battery.capacity_wh / 1'000;
+  const std::string title = fmt::format("Battery: {} to {}", days.front().date, days.back().date);
+  return format_page(
+      title,
+      fmt::format(
+          "<h1>{}</h1>\n{}{}{}<p>Controlled {:.1f} % of the time; {} ticks have no row in the "
+          "log.</p>\n{}",
+          title, format_table(table), notes(all, stored_kwh), contract_table(battery),
+          100.0 * driven / (cycles + missing), missing,
+          stops.rows.empty() ? "" : format_table(stops)));
 }
 
 }  // namespace bess

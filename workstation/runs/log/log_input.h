@@ -98,14 +98,14 @@ class LogInput {
 };
 
 /// Statement of the days as a printable, self-contained page, to compare with the bill
-/// (statement_page.cpp): HTML that is also XML. `days` is not empty; costs and wear from `battery`.
+/// HTML that is also XML. `days` is not empty; costs and wear from `battery`.
 std::string statement_page(const std::vector<LoggedDay>& days, const BatteryParameters& battery);
 
 /// "compiled", a student file or a run folder. By outlook it decides on the logged break-even
 /// price. Throws UserError.
 StudentFile student_for_log(const std::string& name);
 
-// Log comparison (log_comparison.cpp): other policies in the same control cycles, with the
+// Log comparison: other policies in the same control cycles, with the
 // controller's prices and their delay, from the same SoC.
 
 inline constexpr const char* kThisBattery = "this battery";
@@ -122,7 +122,7 @@ struct NetEarnings {
 };
 NetEarnings net_earnings_of(const Evaluation& evaluation);
 
-// Log replay (log_replay.cpp) with another student, to check it before adoption.
+// Log replay with another student, to check it before adoption.
 //
 // The value of a changed decision is an estimate: two minutes at the highest logged power, bought
 // or sold at that price and offset at the day's mean price.

@@ -52,7 +52,7 @@ std::optional<PairedDifference> gain_over_run(const Evaluation& run, const Evalu
 /// One line per run, and the different settings.
 std::string format_runs_table(const std::vector<RunSummary>& runs);
 
-// Page of many runs (runs_page.cpp): profit, proof, rules and settings, with a link to each run's
+// Page of many runs: profit, proof, rules and settings, with a link to each run's
 // report. Failed, stopped and edited runs are listed with their state.
 
 /// Throws UserError only when the folder contains no run.

@@ -133,7 +133,7 @@ void add_lifetime(SizeCell& cell, const Ageing& ageing);
 /// prices, the highest yearly earnings per kWh.
 const SizeCell& best_of(const std::vector<SizeCell>& cells);
 
-// Size report (size_report.cpp): table, CSV, JSON, and a page with a heat map per contract.
+// Size report: table, CSV, JSON, and a page with a heat map per contract.
 
 struct SizeReport {
   const SizePlan& plan;

@@ -81,7 +81,7 @@ std::string tasks_csv(const std::vector<CollectedTask>& tasks);
 std::string settings_csv(const std::vector<CollectedTask>& tasks);
 std::string sites_csv(const std::vector<CollectedSite>& sites);
 
-// Packages of a sweep (class_packages.cpp): for each class of fleet members a folder with header,
+// Packages of a sweep: for each class of fleet members a folder with header,
 // signature and Debian packages (tools/package); and an inventory for tools/delivery/ansible with
 // package, expected student and rollout share.
 

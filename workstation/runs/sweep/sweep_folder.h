@@ -45,7 +45,7 @@ struct SweepFolder {
   }
 };
 
-// Engines of a sweep (engines.cpp): command of GNU parallel for this machine, and script and
+// Engines of a sweep: command of GNU parallel for this machine, and script and
 // commands of a Slurm array. Other schedulers call `bess-train sweep task FOLDER NUMBER`.
 
 /// Runs all tasks without a success in the joblog; `jobs` in parallel (default: one per core).
