@@ -24,7 +24,6 @@
 #include "workstation/runs/chain/price_input.h"
 #include "workstation/runs/run/run_backtest.h"
 #include "workstation/runs/run/run_record.h"
-#include "workstation/runs/run/training_scope.h"
 
 namespace bess {
 namespace {

@@ -18,7 +18,7 @@
 #include "workstation/runs/chain/folder_lock.h"
 #include "workstation/runs/chain/price_input.h"
 #include "workstation/runs/chain/rule_files.h"
-#include "workstation/runs/run/training_scope.h"
+#include "workstation/runs/run/run_record.h"
 
 namespace bess {
 namespace {

@@ -19,7 +19,7 @@
 #include "workstation/runs/chain/common_options.h"
 #include "workstation/runs/chain/policy_factory.h"
 #include "workstation/runs/chain/price_input.h"
-#include "workstation/runs/run/training_scope.h"
+#include "workstation/runs/run/run_record.h"
 
 namespace bess {
 namespace {

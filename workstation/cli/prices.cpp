@@ -9,7 +9,6 @@
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
-#include "workstation/data/market/feed/day_ahead_fetch.h"
 #include "workstation/data/market/feed/elia_fetch.h"
 #include "workstation/data/market/feed/market_files.h"
 #include "workstation/data/market/model/simulated_market.h"

@@ -13,7 +13,6 @@
 #include "workstation/base/answer.h"
 #include "workstation/data/env/evaluate.h"
 #include "workstation/report/comparison.h"
-#include "workstation/report/figures/heat_map.h"
 #include "workstation/report/figures/html.h"
 
 namespace bess {

@@ -13,7 +13,7 @@
 #include "workstation/correction/student/student_policy.h"
 #include "workstation/data/env/day_errors.h"
 #include "workstation/policy/planners/foresight.h"
-#include "workstation/report/figures/heat_map.h"
+#include "workstation/report/figures/html.h"
 #include "workstation/report/report.h"
 
 namespace bess {

@@ -20,7 +20,7 @@
 #include "workstation/correction/student/student_policy.h"
 #include "workstation/data/env/context_fit.h"
 #include "workstation/report/figures/curves.h"
-#include "workstation/report/figures/heat_map.h"
+#include "workstation/report/figures/html.h"
 #include "workstation/report/headline.h"
 
 namespace bess {

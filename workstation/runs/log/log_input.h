@@ -97,8 +97,8 @@ class LogInput {
   bool counts_money_ = false;
 };
 
-/// Statement of the days as a printable, self-contained page, to compare with the bill
-/// HTML that is also XML. `days` is not empty; costs and wear from `battery`.
+/// Statement of the days as a printable, self-contained page, to compare with the bill: HTML
+/// that is also XML. `days` is not empty; costs and wear from `battery`.
 std::string statement_page(const std::vector<LoggedDay>& days, const BatteryParameters& battery);
 
 /// "compiled", a student file or a run folder. By outlook it decides on the logged break-even

@@ -16,7 +16,6 @@
 #include "shared/action.h"
 #include "workstation/correction/student/student_file.h"
 #include "workstation/data/env/evaluate.h"
-#include "workstation/data/market/feed/day_ahead_fetch.h"
 #include "workstation/data/market/feed/elia_fetch.h"
 #include "workstation/runs/chain/price_input.h"
 #include "workstation/runs/chain/run_config.h"

@@ -16,7 +16,6 @@
 #include "workstation/data/env/evaluate.h"
 #include "workstation/data/market/series/local_date.h"
 #include "workstation/policy/planners/baselines.h"
-#include "workstation/report/figures/heat_map.h"
 #include "workstation/report/figures/html.h"
 #include "workstation/runs/chain/policy_factory.h"
 #include "workstation/runs/chain/run_config.h"

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "workstation/runs/sweep/sweep_folder.h"
 #include "workstation/runs/sweep/sweep_plan.h"
 
 namespace bess {

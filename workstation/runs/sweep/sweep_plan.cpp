@@ -25,7 +25,6 @@
 #include "workstation/runs/run/run_backtest.h"
 #include "workstation/runs/run/run_record.h"
 #include "workstation/runs/run/run_report.h"
-#include "workstation/runs/sweep/sweep_folder.h"
 
 namespace bess {
 

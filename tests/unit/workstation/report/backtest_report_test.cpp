@@ -9,7 +9,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 #include "tests/unit/workstation/report/report_test_support.h"
-#include "workstation/report/figures/heat_map.h"
+#include "workstation/report/figures/html.h"
 
 namespace bess {
 namespace {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "shared/host/http_client.h"
+#include "workstation/data/market/feed/day_ahead_rows.h"
 #include "workstation/data/market/feed/market_files.h"
 #include "workstation/data/market/series/local_date.h"
 
@@ -153,5 +154,25 @@ bool get_with_retries(const RetriedRequest& request, const RetryPolicy& retry, c
 
 /// "opendata.elia.be" of a URL.
 std::string host_of(const std::string& url);
+
+// Day-ahead download from energy-charts (Fraunhofer ISE), which needs no key: one request per year
+// or part of a year. No partial results are kept.
+
+inline constexpr const char* kEnergyChartsBaseUrl = "https://api.energy-charts.info";
+
+struct DayAheadRequest {
+  FetchSpan span;
+  std::string zone = "BE";  ///< bidding zone, as energy-charts names it
+  std::string base_url = kEnergyChartsBaseUrl;
+  std::int64_t now_utc_s;
+  RetryPolicy retry;
+  bool allow_gaps = false;
+  Sleep sleep;
+};
+
+/// Nothing if interrupted. Throws UserError if the server does not answer, the answer is invalid,
+/// or published days have gaps that are not allowed.
+std::optional<JoinedDayAhead> fetch_day_ahead(const DayAheadRequest& request,
+                                              const std::atomic<bool>& interrupted);
 
 }  // namespace bess

@@ -10,7 +10,7 @@
 #include "tests/support/tokens.h"
 #include "tests/support/user_error_of.h"
 #include "workstation/runs/chain/folder_lock.h"
-#include "workstation/runs/run/training_scope.h"
+#include "workstation/runs/run/run_record.h"
 
 namespace bess {
 namespace {

@@ -1,6 +1,6 @@
 // Training conditions of a model, wherever its file is: evaluate warns of other costs, another
 // battery and another price regime.
-#include "workstation/runs/run/training_scope.h"
+#include "workstation/runs/run/run_record.h"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,5 @@
 // The commands by which engines run a sweep.
-#include "workstation/runs/sweep/sweep_folder.h"
+#include "workstation/runs/sweep/sweep_plan.h"
 
 #include <gmock/gmock.h>
 

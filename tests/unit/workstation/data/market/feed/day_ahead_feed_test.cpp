@@ -12,8 +12,8 @@
 #include "tests/support/tokens.h"
 #include "tests/support/train_commands.h"
 #include "tests/unit/workstation/data/market/feed/fake_charts.h"
-#include "workstation/data/market/feed/day_ahead_fetch.h"
 #include "workstation/data/market/feed/day_ahead_rows.h"
+#include "workstation/data/market/feed/elia_fetch.h"
 #include "workstation/data/market/series/local_date.h"
 
 namespace bess {
