@@ -25,6 +25,13 @@ inline std::string value_in(const Entries& entries, std::string_view name) {
   return found == entries.end() ? std::string() : found->second;
 }
 
+/// Object of texts.
+inline Json json_of(const Entries& entries) {
+  Json json = Json::object();
+  for (const auto& [name, value] : entries) json.set(name.c_str(), value);
+  return json;
+}
+
 /// Incremented when a member is removed or changes its meaning, not when one is added.
 inline constexpr int kSchemaVersion = 1;
 

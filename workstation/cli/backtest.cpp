@@ -79,12 +79,6 @@ void claim_folder(const fs::path& folder, const std::string& identity) {
   }
 }
 
-/// "2023.csv.gz", "2023.csv.gz and 1 more".
-std::string name_of(const std::vector<std::string>& prices) {
-  return prices.size() == 1 ? prices.front()
-                            : fmt::format("{} and {} more", prices.front(), prices.size() - 1);
-}
-
 fs::path model_path(const fs::path& folder, const Fold& fold, std::string_view name) {
   return folder / (fold.month + (name == kChainName ? ".student.json" : ".teacher.bin"));
 }
@@ -166,7 +160,10 @@ void run_backtest(const BacktestArguments& options) {
   require_policies(baselines);
   require_outlook(baselines, options.day_ahead.path);
   const MinuteSeries series = options.price_input.read_joined(options.prices).series;
-  const std::string prices = name_of(options.prices);
+  const std::string prices =
+      options.prices.size() == 1
+          ? options.prices.front()
+          : fmt::format("{} and {} more", options.prices.front(), options.prices.size() - 1);
   MarketSteps market = market_of(series, config.market, prices);
   options.day_ahead.attach_to(market, series, options.price_input.accepted(), config.market);
   const Folds folds = make_folds(market, options.plan);

@@ -57,12 +57,6 @@ void print_result(const DistilArguments& options, const CorrectionResult& result
   fmt::print("{}", rule_count_lines(c));
 }
 
-/// "student.json" becomes "student_unproved.json" in the same folder.
-std::filesystem::path unproved_path(const std::filesystem::path& out) {
-  std::filesystem::path path = out;
-  return path.replace_filename(out.stem().string() + "_unproved" + out.extension().string());
-}
-
 void run_distil(const DistilArguments& options) {
   RunConfig config = options.common.resolve();
   if (options.omega) config.distil.omega = *options.omega;
@@ -91,7 +85,8 @@ void run_distil(const DistilArguments& options) {
                         });
   const StudentFile& student = student_of(result.verdict);
   if (!options.plain && !std::holds_alternative<ProvedStudent>(result.verdict)) {
-    const std::filesystem::path kept = unproved_path(options.out);
+    std::filesystem::path kept = options.out;
+    kept.replace_filename(kept.stem().string() + "_unproved" + kept.extension().string());
     save_student(kept, student);
     require_proof(result, config.distil.method, "", "; the student is kept as " + kept.string());
   }

@@ -48,13 +48,6 @@ void report_plan(const PlanArguments& options, const SweepPlan& plan) {
              sbatch_lines(plan.folder, numbers));
 }
 
-void plan_now(PlanArguments& options) {
-  const SweepFolder folder{options.out};
-  const SweepPlan planned = plan_sweep(options.request, folder);
-  if (!options.dry_run) write_plan(planned, options.request);
-  report_plan(options, planned);
-}
-
 void add_sweep_plan(ProgramCommand& sweep) {
   auto options = std::make_shared<PlanArguments>();
   SweepRequest& request = options->request;
@@ -88,7 +81,11 @@ void add_sweep_plan(ProgramCommand& sweep) {
       "  bess-train sweep plan --prices market.csv.gz --out sweeps/first --set "
       "distil.fidelity=1,2 --seeds 6\n"
       "  bess-train sweep plan plan.toml --prices market.csv.gz --out sweeps/second --dry-run");
-  command.runs([options] { plan_now(*options); });
+  command.runs([options] {
+    const SweepPlan planned = plan_sweep(options->request, {options->out});
+    if (!options->dry_run) write_plan(planned, options->request);
+    report_plan(*options, planned);
+  });
 }
 
 // bess-train sweep run: tasks on this machine, by GNU parallel, which replaces this process.

@@ -12,13 +12,6 @@
 namespace bess {
 namespace {
 
-const Evaluation* foresight_of(const std::vector<NamedEvaluation>& evaluations,
-                               EvaluationField field, const NamedEvaluation* given) {
-  const NamedEvaluation* found = find_evaluation(evaluations, kForesightName);
-  const NamedEvaluation* bound = found == nullptr ? given : found;
-  return bound == nullptr || (bound->*field).days.empty() ? nullptr : &(bound->*field);
-}
-
 PairedDifference gain_of(const ComparisonRow& row) {
   return row.difference.value_or(PairedDifference{NAN});
 }
@@ -83,7 +76,10 @@ std::vector<ComparisonRow> comparison_rows(const std::vector<NamedEvaluation>& e
                                            EvaluationField field, const NamedEvaluation* given) {
   std::vector<ComparisonRow> rows;
   if (evaluations.empty()) return rows;
-  const Evaluation* foresight = foresight_of(evaluations, field, given);
+  const NamedEvaluation* const found = find_evaluation(evaluations, kForesightName);
+  const NamedEvaluation* const bound = found == nullptr ? given : found;
+  const Evaluation* const foresight =
+      bound == nullptr || (bound->*field).days.empty() ? nullptr : &(bound->*field);
   const Evaluation& first = evaluations.front().*field;
   for (const NamedEvaluation& named : evaluations) {
     const Evaluation& own = named.*field;

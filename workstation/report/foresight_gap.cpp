@@ -355,56 +355,44 @@ std::string days_html(const std::vector<DayLoss>& losses, double capacity_mwh) {
   return text + "</tbody></table></figure>\n";
 }
 
-PictureTable cause_table(const std::vector<DayLoss>& losses, double capacity_mwh) {
+PictureFile cause_file(const std::vector<DayLoss>& losses, double capacity_mwh) {
   const Means means(losses, capacity_mwh);
-  PictureTable table{"lost_causes", {"cause", "missed_eur_per_day_per_mwh"}, {}};
+  std::string csv = "cause,missed_eur_per_day_per_mwh\n";
   for (const LossCause cause : causes_of(means.part)) {
-    table.rows.push_back(
-        {std::string(text_of(cause).key), exact(means.part[static_cast<std::size_t>(cause)])});
+    csv += fmt::format("{},{}\n", text_of(cause).key,
+                       exact(means.part[static_cast<std::size_t>(cause)]));
   }
-  table.rows.push_back({"all", exact(means.missed)});
-  return table;
+  return {"lost_causes.csv", csv + fmt::format("all,{}\n", exact(means.missed))};
 }
 
-PictureTable hour_table(const std::vector<DayLoss>& losses, double capacity_mwh) {
-  PictureTable table{"lost_hours", {"month", "local_hour", "missed_eur_per_day_per_mwh"}, {}};
+PictureFile hour_file(const std::vector<DayLoss>& losses, double capacity_mwh) {
+  std::string csv = "month,local_hour,missed_eur_per_day_per_mwh\n";
   for (const auto& [month, hours] : regret_by_month(losses, capacity_mwh)) {
     for (std::size_t h = 0; h < kHoursPerDay; ++h) {
-      table.rows.push_back({month, fmt::format("{}", h), exact(hours[h].value)});
+      csv += fmt::format("{},{},{}\n", month, h, exact(hours[h].value));
     }
   }
-  return table;
+  return {"lost_hours.csv", std::move(csv)};
 }
 
-PictureTable day_table(const std::vector<DayLoss>& losses, double capacity_mwh) {
-  PictureTable table{"lost_days",
-                     {"date", "missed_eur_per_mwh", "earned_eur_per_mwh", "foresight_eur_per_mwh"},
-                     {}};
-  for (std::size_t c = 0; c < kLossCauseCount; ++c) {
-    table.columns.push_back(fmt::format("{}_eur_per_mwh", text_of(cause_at(c)).key));
-  }
-  for (const char* column :
-       {"main_cause", "moment_utc", "moment_soc", "moment_action", "moment_best_action",
-        "moment_paid_eur_per_mwh", "moment_observed_eur_per_mwh", "moment_missed_eur_per_mwh"}) {
-    table.columns.emplace_back(column);
-  }
+PictureFile day_file(const std::vector<DayLoss>& losses, double capacity_mwh) {
+  std::string csv = "date,missed_eur_per_mwh,earned_eur_per_mwh,foresight_eur_per_mwh,";
+  for (const LossCauseText& cause : kTexts) csv += fmt::format("{}_eur_per_mwh,", cause.key);
+  csv +=
+      "main_cause,moment_utc,moment_soc,moment_action,moment_best_action,moment_paid_eur_per_mwh,"
+      "moment_observed_eur_per_mwh,moment_missed_eur_per_mwh\n";
   for (const DayLoss* day : by_missed(losses)) {
-    std::vector<std::string> row{day->date, exact(day->missed_eur() / capacity_mwh),
-                                 exact(day->earned_eur / capacity_mwh),
-                                 exact(day->foresight_eur / capacity_mwh)};
-    for (const double part : day->part_eur) row.push_back(exact(part / capacity_mwh));
+    csv += fmt::format("{},{},{},{},", day->date, exact(day->missed_eur() / capacity_mwh),
+                       exact(day->earned_eur / capacity_mwh),
+                       exact(day->foresight_eur / capacity_mwh));
+    for (const double part : day->part_eur) csv += exact(part / capacity_mwh) + ",";
     const GapMoment& m = day->moment[static_cast<std::size_t>(day->main_cause())];
-    row.emplace_back(text_of(day->main_cause()).key);
-    row.emplace_back(utc_text(m.step.utc_s).view());
-    row.push_back(fmt::format("{:.4f}", m.soc_frac));
-    row.emplace_back(action_name(m.done));
-    row.emplace_back(action_name(m.best));
-    row.push_back(fmt::format("{:.4f}", m.step.paid_eur_per_mwh));
-    row.push_back(fmt::format("{:.4f}", m.step.observed_eur_per_mwh));
-    row.push_back(exact(m.eur / capacity_mwh));
-    table.rows.push_back(std::move(row));
+    csv += fmt::format("{},{},{:.4f},{},{},{:.4f},{:.4f},{}\n", text_of(day->main_cause()).key,
+                       utc_text(m.step.utc_s).view(), m.soc_frac, action_name(m.done),
+                       action_name(m.best), m.step.paid_eur_per_mwh, m.step.observed_eur_per_mwh,
+                       exact(m.eur / capacity_mwh));
   }
-  return table;
+  return {"lost_days.csv", std::move(csv)};
 }
 
 }  // namespace
@@ -465,10 +453,10 @@ std::string foresight_gap_html(const std::vector<DayLoss>& losses, double capaci
          "correction above compares two whole runs.</p>\n";
 }
 
-std::vector<PictureTable> foresight_gap_tables(const std::vector<DayLoss>& losses,
-                                               double capacity_mwh) {
-  return {cause_table(losses, capacity_mwh), hour_table(losses, capacity_mwh),
-          day_table(losses, capacity_mwh)};
+std::vector<PictureFile> foresight_gap_files(const std::vector<DayLoss>& losses,
+                                             double capacity_mwh) {
+  return {cause_file(losses, capacity_mwh), hour_file(losses, capacity_mwh),
+          day_file(losses, capacity_mwh)};
 }
 
 }  // namespace bess

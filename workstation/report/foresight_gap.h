@@ -108,7 +108,7 @@ std::vector<DayLoss> losses_of(const RunResults& run);
 std::string foresight_gap_html(const std::vector<DayLoss>& losses, double capacity_mwh);
 
 /// Data of foresight_gap_html: lost_causes, lost_hours, lost_days (all days).
-std::vector<PictureTable> foresight_gap_tables(const std::vector<DayLoss>& losses,
-                                               double capacity_mwh);
+std::vector<PictureFile> foresight_gap_files(const std::vector<DayLoss>& losses,
+                                             double capacity_mwh);
 
 }  // namespace bess

@@ -90,28 +90,23 @@ void for_each_step(const RunResults& in, const PageSteps& steps, Look look) {
   }
 }
 
-PictureTable step_table(const RunResults& in, const PageSteps& steps) {
-  PictureTable table{
-      "steps", {"utc", "observed_eur_per_mwh", "paid_eur_per_mwh"}, {}, /*packed=*/true};
+PictureFile step_file(const RunResults& in, const PageSteps& steps) {
+  std::string csv = "utc,observed_eur_per_mwh,paid_eur_per_mwh";
   for (const PolicySteps& policy : steps.policies) {
     for (const char* what : {"soc_frac", "action", "power_w", "profit_eur"}) {
-      table.columns.push_back(fmt::format("{} {}", policy.name, what));
+      csv += fmt::format(",{} {}", policy.name, what);
     }
   }
   for_each_step(in, steps, [&](const MarketStep& step, std::size_t i) {
-    std::vector<std::string> row{std::string(utc_text(step.utc_s).view()),
-                                 fmt::format("{:.2f}", step.observed_eur_per_mwh),
-                                 fmt::format("{:.3f}", step.paid_eur_per_mwh)};
+    csv += fmt::format("\n{},{:.2f},{:.3f}", utc_text(step.utc_s).view(), step.observed_eur_per_mwh,
+                       step.paid_eur_per_mwh);
     for (const PolicySteps& policy : steps.policies) {
       const StepRecord& r = policy.records[i];
-      row.push_back(fmt::format("{:.4f}", r.soc_frac));
-      row.emplace_back(action_name(r.action));
-      row.push_back(fmt::format("{:.1f}", r.power_w + 0.0));
-      row.push_back(fmt::format("{:.4f}", r.profit_eur + 0.0));
+      csv += fmt::format(",{:.4f},{},{:.1f},{:.4f}", r.soc_frac, action_name(r.action),
+                         r.power_w + 0.0, r.profit_eur + 0.0);
     }
-    table.rows.push_back(std::move(row));
   });
-  return table;
+  return {"steps.csv.gz", csv + "\n"};
 }
 
 constexpr int kNoonQuarterHour = 48;
@@ -139,11 +134,10 @@ LatticeState first_map(const RunResults& in) {
 }
 
 /// One row per interval of prices with the same action, at each SoC.
-PictureTable map_table(const RunResults& in) {
-  PictureTable table{"policy_map",
-                     {"student", "context_class", "quarter_hour", "minute", "soc_frac",
-                      "price_from_eur_per_mwh", "price_to_eur_per_mwh", "action"},
-                     {}};
+PictureFile map_file(const RunResults& in) {
+  std::string csv =
+      "student,context_class,quarter_hour,minute,soc_frac,price_from_eur_per_mwh,"
+      "price_to_eur_per_mwh,action\n";
   const LatticeState context = first_map(in);
   const auto add = [&](const char* name, const StudentNet& net) {
     ActionGrid grid;
@@ -153,20 +147,18 @@ PictureTable map_table(const RunResults& in) {
       const std::int8_t* row = &grid[static_cast<std::size_t>(soc) * prices];
       for (int from = 0, p = 1; p <= prices; ++p) {
         if (p < prices && row[p] == row[from]) continue;
-        table.rows.push_back({name, fmt::format("{}", context.context_class),
-                              fmt::format("{}", context.quarter_hour),
-                              fmt::format("{}", context.minute_of_quarter_hour),
-                              fmt::format("{:.3f}", static_cast<double>(soc) / (kSocCount - 1)),
-                              fmt::format("{}", kLatticePriceMinEurPerMwh + from),
-                              fmt::format("{}", kLatticePriceMinEurPerMwh + p - 1),
-                              std::string(action_name(static_cast<Action>(row[from])))});
+        csv += fmt::format("{},{},{},{},{:.3f},{},{},{}\n", name, context.context_class,
+                           context.quarter_hour, context.minute_of_quarter_hour,
+                           static_cast<double>(soc) / (kSocCount - 1),
+                           kLatticePriceMinEurPerMwh + from, kLatticePriceMinEurPerMwh + p - 1,
+                           action_name(static_cast<Action>(row[from])));
         from = p;
       }
     }
   };
   add(own_student_name(in.corrected.certificate), in.corrected.net);
   add(kPlainName, in.plain->net);
-  return table;
+  return {"policy_map.csv", std::move(csv)};
 }
 
 constexpr double kWattHoursPerMegawattHour = 1e6;
@@ -228,13 +220,6 @@ std::vector<double> against_foresight(const RunResults& in, std::vector<double> 
   return profits;
 }
 
-Json archive_json(const RunResults& in, const PageSteps& steps) {
-  Json archive = step_archive(in.market, steps.days, steps.policies, steps.kept,
-                              [&](const MarketStep& step) { return context_class_of(in, step); });
-  archive.set("days_left_out", steps.days.size() - steps.kept.size());
-  return archive;
-}
-
 template <int kInputs, int kOutputs>
 Json layer_json(const Affine<kInputs, kOutputs>& layer) {
   Json weight = Json::list();
@@ -274,13 +259,6 @@ Json state_json(const LatticeState& s) {
   return std::span(state);
 }
 
-/// State of each broken demand (null if unknown), for the buttons of failure_html().
-Json broken_json(const RunResults& in) {
-  return Json::list_from(in.broken, [](const BrokenDemand& demand) {
-    return demand.state ? state_json(*demand.state) : Json(NAN);
-  });
-}
-
 /// Student whose counterexamples are shown: the corrected one if it has any, else the plain one.
 const Certificate& shown_as_wrong(const RunResults& in) {
   const Certificate& corrected = in.corrected.certificate;
@@ -293,18 +271,6 @@ Json counterexamples_json(const RunResults& in) {
   const std::size_t stride = found.size() / kCounterexamplesShown + 1;
   for (std::size_t i = 0; i < found.size(); i += stride) list.add(state_json(found[i]));
   return list;
-}
-
-Json map_json(const LatticeState& context) {
-  return Json::object({{"context_class", context.context_class},
-                       {"quarter_hour", context.quarter_hour},
-                       {"minute", context.minute_of_quarter_hour}});
-}
-
-Json contexts_json(const ContextClasses& classes) {
-  Json contexts = Json::list();
-  for (int c = 1; c <= kContextClassCount; ++c) contexts.add(context_text(classes, c));
-  return contexts;
 }
 
 /// Profit of the paper's rule on the validation days, SoC carried over, as for the teacher.
@@ -338,13 +304,6 @@ Json learning_json(const RunResults& in) {
                        {"distil", Json::list_from(in.distil_curve, distil)}});
 }
 
-/// Name and colour of each baseline drawn with the exported policy.
-Json rivals_json() {
-  return Json::list_from(rival_names(), [](const std::string& name) {
-    return Json::object({{"name", name}, {"colour", find_baseline(name)->colour}});
-  });
-}
-
 Json prices_json(const MarketSteps& market) {
   const PriceHistogram histogram = price_histogram(market);
   return Json::object({{"low", histogram.low},
@@ -361,10 +320,6 @@ Json battery_json(const BatteryParameters& battery) {
                        {"soc_min", battery.soc_min_frac},
                        {"soc_max", battery.soc_max_frac},
                        {"wear_eur_per_mwh", battery.wear_eur_per_mwh}});
-}
-
-Json thresholds_json(const PriceThresholds& thresholds) {
-  return Json::object({{"low", thresholds.low_eur_per_mwh}, {"high", thresholds.high_eur_per_mwh}});
 }
 
 static_assert(std::endian::native == std::endian::little, "the page's arrays are little-endian");
@@ -422,8 +377,8 @@ std::string deflated(const std::string& bytes) {
 
 }  // namespace
 
-std::vector<PictureTable> page_pictures(const RunResults& in, const PageSteps& steps) {
-  return {step_table(in, steps), map_table(in), histogram_table(price_histogram(in.market))};
+std::vector<PictureFile> page_pictures(const RunResults& in, const PageSteps& steps) {
+  return {step_file(in, steps), map_file(in), histogram_file(price_histogram(in.market))};
 }
 
 std::string teacher_name(const Teacher& teacher) {
@@ -466,18 +421,33 @@ Json page_data(const RunResults& in, const PageSteps& steps) {
   data.set("dates", Json::list_from(dates));
   data.set("marks", regime_marks(dates));
   data.set("policies", policies_json(in.evaluations));
-  data.set("rivals", rivals_json());
-  data.set("archive", archive_json(in, steps));
+  // Name and colour of each baseline drawn with the exported policy.
+  data.set("rivals", Json::list_from(rival_names(), [](const std::string& name) {
+             return Json::object({{"name", name}, {"colour", find_baseline(name)->colour}});
+           }));
+  Json archive = step_archive(in.market, days, steps.policies, steps.kept,
+                              [&](const MarketStep& step) { return context_class_of(in, step); });
+  archive.set("days_left_out", days.size() - steps.kept.size());
+  data.set("archive", std::move(archive));
   data.set("lattice", lattice_json());
-  data.set("contexts", contexts_json(classes));
-  data.set("thresholds", thresholds_json(certificate.thresholds));
+  Json contexts = Json::list();
+  for (int c = 1; c <= kContextClassCount; ++c) contexts.add(context_text(classes, c));
+  data.set("contexts", std::move(contexts));
+  data.set("thresholds", Json::object({{"low", certificate.thresholds.low_eur_per_mwh},
+                                       {"high", certificate.thresholds.high_eur_per_mwh}}));
   data.set("students", Json::list_of(student_json(own_name, in.corrected.net),
                                      student_json(kPlainName, in.plain->net)));
   data.set("counterexamples", counterexamples_json(in));
   data.set("counterexamples_of", &shown_as_wrong(in) == &certificate ? own_name : kPlainName);
-  data.set("broken", broken_json(in));
+  // State of each broken demand (null if unknown), for the buttons of failure_html().
+  data.set("broken", Json::list_from(in.broken, [](const BrokenDemand& demand) {
+             return demand.state ? state_json(*demand.state) : Json(NAN);
+           }));
   data.set("rules", rules_json(certificate.rules, classes.kind));
-  data.set("first_map", map_json(first_map(in)));
+  const LatticeState map = first_map(in);
+  data.set("first_map", Json::object({{"context_class", map.context_class},
+                                      {"quarter_hour", map.quarter_hour},
+                                      {"minute", map.minute_of_quarter_hour}}));
   data.set("learning", learning_json(in));
   data.set("prices", prices_json(in.market));
   return data;

@@ -59,7 +59,7 @@ Json page_data(const RunResults& run, const PageSteps& steps);
 // foresight_gap.h has its own; days, checkpoints and losses are in evaluation_days.csv,
 // training_curve.csv, student_checkpoints.csv and distil_curve.csv.
 
-std::vector<PictureTable> page_pictures(const RunResults& run, const PageSteps& steps);
+std::vector<PictureFile> page_pictures(const RunResults& run, const PageSteps& steps);
 
 /// Name of a run's teacher: "c51 teacher".
 std::string teacher_name(const Teacher& teacher);

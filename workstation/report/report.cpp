@@ -122,10 +122,13 @@ std::vector<std::string> write_report(const RunResults& run, const fs::path& fol
   std::vector<std::string> names{kPage};
   const std::vector<DayLoss> losses = losses_of(run);
   const PageSteps steps = page_steps(run);
-  std::vector<PictureTable> pictures = page_pictures(run, steps);
-  std::ranges::move(foresight_gap_tables(losses, capacity_mwh_of(run)),
+  std::vector<PictureFile> pictures = page_pictures(run, steps);
+  std::ranges::move(foresight_gap_files(losses, capacity_mwh_of(run)),
                     std::back_inserter(pictures));
-  for (const PictureTable& table : pictures) names.push_back(write_picture(table, folder));
+  for (const PictureFile& picture : pictures) {
+    write_file(folder / picture.name, picture.csv);
+    names.push_back(picture.name);
+  }
   write_file(folder / kPage, page_of(run, steps, losses));
   return names;
 }

@@ -210,12 +210,6 @@ std::string box_lines(const RuleBox& box) {
   return text;
 }
 
-std::string threshold_line(const Rule& rule) {
-  return rule.lowest() == Action::kCharge
-             ? fmt::format("charge_at_or_below = {}\n", rule.box.price_max_eur_per_mwh)
-             : fmt::format("discharge_at_or_above = {}\n", rule.box.price_min_eur_per_mwh);
-}
-
 void append_rules(std::string_view text, const std::string& name, RuleSet& set) {
   TomlValue document;
   std::string error;
@@ -259,7 +253,13 @@ std::string format_rules(const RuleSet& rules) {
   std::string text;
   for (const Rule& rule : rules.rules) {
     text += fmt::format("{}[[rule]]\nname = \"{}\"\n", text.empty() ? "" : "\n", rule.name);
-    text += rule.is_threshold ? threshold_line(rule) : box_lines(rule.box) + rule.demand->line();
+    if (!rule.is_threshold) {
+      text += box_lines(rule.box) + rule.demand->line();
+    } else if (rule.lowest() == Action::kCharge) {
+      text += fmt::format("charge_at_or_below = {}\n", rule.box.price_max_eur_per_mwh);
+    } else {
+      text += fmt::format("discharge_at_or_above = {}\n", rule.box.price_min_eur_per_mwh);
+    }
     if (rule.enforce) text += "enforce = true\n";
   }
   return text;

@@ -102,10 +102,6 @@ constexpr std::string_view kRoundsHeader = "round,looked_at,demand,violations";
 constexpr std::string_view kLattice = "lattice";
 constexpr std::string_view kCorners = "corners";
 
-std::string minutes_text(double seconds) {
-  return seconds < 90 ? fmt::format("{:.0f} s", seconds) : fmt::format("{:.0f} min", seconds / 60);
-}
-
 constexpr std::string_view kCheckpointHeader = "round,epoch,validation_eur_per_day_per_mwh,state";
 constexpr std::array<std::string_view, 3> kStates{"passed over", "disobeys", "chosen"};
 
@@ -226,9 +222,11 @@ ProofRound round_of(const Certificate& certificate) {
 std::string round_line(const ProofRound& round, const RoundsState& state) {
   const std::string head = fmt::format("round {} of at most {}", state.done, state.most);
   if (round.violations() == 0) return head + ": no violation";
-  const std::string more = state.done < state.most ? fmt::format("; at most {} more and a proof",
-                                                                 minutes_text(state.seconds_left))
-                                                   : "";
+  const double seconds = state.seconds_left;
+  const std::string time =
+      seconds < 90 ? fmt::format("{:.0f} s", seconds) : fmt::format("{:.0f} min", seconds / 60);
+  const std::string more =
+      state.done < state.most ? fmt::format("; at most {} more and a proof", time) : "";
   return fmt::format("{}: {} left{}{}", head, round.text(),
                      round.is_whole ? "" : " at the deciding states", more);
 }

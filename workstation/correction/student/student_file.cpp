@@ -243,12 +243,6 @@ std::shared_ptr<const PlanCache> parse_outlook(const JsonReader& in, const std::
   return PlanCache::of(model);
 }
 
-Json learnt_for_json(const Entries& learnt_for) {
-  Json json = Json::object();
-  for (const auto& [name, value] : learnt_for) json.set(name.c_str(), value);
-  return json;
-}
-
 Entries parse_learnt_for(const JsonValue& object, const std::string& name) {
   Entries learnt_for;
   for (const JsonValue member : object) {
@@ -356,7 +350,7 @@ void save_student(const std::filesystem::path& path, const StudentFile& student)
                             {"provenance", student.provenance},
                             {"certificate", certificate_json(student.certificate)},
                             {"context", context_name(student.net.context.kind)}});
-  if (!student.learnt_for.empty()) json.set("learnt_for", learnt_for_json(student.learnt_for));
+  if (!student.learnt_for.empty()) json.set("learnt_for", json_of(student.learnt_for));
   if (student.cycles_per_day) json.set("cycles_per_day", Decimals{*student.cycles_per_day, 2});
   if (has_rules) add_rule_claims(student.certificate, json);
   json.set("level_edge_eur_per_mwh", std::span(student.net.context.level_edge_eur_per_mwh));

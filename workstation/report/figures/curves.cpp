@@ -78,16 +78,15 @@ PriceHistogram price_histogram(const MarketSteps& market) {
   return histogram;
 }
 
-PictureTable histogram_table(const PriceHistogram& shown) {
+PictureFile histogram_file(const PriceHistogram& shown) {
   const std::vector<double> train = shown.percent_by_bin(shown.train);
   const std::vector<double> test = shown.percent_by_bin(shown.test);
-  PictureTable table{
-      "prices_seen", {"from_eur_per_mwh", "training_days_percent", "test_days_percent"}, {}};
+  std::string csv = "from_eur_per_mwh,training_days_percent,test_days_percent\n";
   for (std::size_t b = 0; b < train.size(); ++b) {
     const double from = shown.low + static_cast<double>(b) * kPriceBinEurPerMwh;
-    table.rows.push_back({fmt::format("{:g}", from), exact(train[b]), exact(test[b])});
+    csv += fmt::format("{:g},{},{}\n", from, exact(train[b]), exact(test[b]));
   }
-  return table;
+  return {"prices_seen.csv", std::move(csv)};
 }
 
 std::string training_curve_csv(const std::vector<CurvePoint>& curve) {

@@ -31,7 +31,7 @@ struct PriceHistogram {
 PriceHistogram price_histogram(const MarketSteps& market);
 
 /// One row per bin.
-PictureTable histogram_table(const PriceHistogram& shown);
+PictureFile histogram_file(const PriceHistogram& shown);
 
 /// Neighbours on either side in the moving average of validation profits.
 inline constexpr int kSmoothingReach = 2;

@@ -42,13 +42,6 @@ std::string table_row(const std::vector<std::string>& cells,
   return text + "</tr>\n";
 }
 
-std::string line_of(const std::vector<std::string>& fields) {
-  std::string line;
-  for (const std::string& field : fields) line += csv_field(field) + ',';
-  line.back() = '\n';
-  return line;
-}
-
 std::vector<std::string> values_of(const std::vector<HeatPoint>& points,
                                    std::string HeatPoint::*setting) {
   std::vector<std::string> values;
@@ -151,14 +144,6 @@ std::string sort_table_html(const SortTable& table) {
 std::string exact(double value) {
   const std::string text = fmt::format("{:.6f}", value);
   return text == "-0.000000" ? text.substr(1) : text;
-}
-
-std::string write_picture(const PictureTable& table, const std::filesystem::path& folder) {
-  std::string text = line_of(table.columns);
-  for (const auto& row : table.rows) text += line_of(row);
-  std::string file = table.name + (table.packed ? ".csv.gz" : ".csv");
-  write_file(folder / file, text);
-  return file;
 }
 
 std::string csv_link(std::string_view file) {

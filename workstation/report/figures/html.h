@@ -67,15 +67,10 @@ inline constexpr std::size_t kMonthTextLength = 7;  ///< of "2023-01"
 /// Number with six decimals, never -0.
 std::string exact(double value);
 
-struct PictureTable {
-  std::string name;  ///< of the file, without extension
-  std::vector<std::string> columns;
-  std::vector<std::vector<std::string>> rows;  ///< one field per column
-  bool packed = false;                         ///< compressed file
+struct PictureFile {
+  std::string name;  ///< "lost_days.csv", or ".csv.gz" if compressed
+  std::string csv;
 };
-
-/// Writes "lost_days.csv", or ".csv.gz" if packed, and returns this name.
-std::string write_picture(const PictureTable& table, const std::filesystem::path& folder);
 
 /// Link to a file in the folder of the page.
 std::string csv_link(std::string_view file);

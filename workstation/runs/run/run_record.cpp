@@ -33,12 +33,6 @@ Entries::const_iterator find(const Entries& entries, const std::string& name) {
   return std::ranges::find(entries, name, &Entries::value_type::first);
 }
 
-Json json_of(const Entries& entries) {
-  Json json = Json::object();
-  for (const auto& [name, value] : entries) json.set(name.c_str(), value);
-  return json;
-}
-
 Entries entries_of(const JsonValue& object, const RunFolder& folder) {
   Entries entries;
   for (const JsonValue member : object) {

@@ -115,12 +115,6 @@ const NamedEvaluation& exported(const RunSummary& run) {
   return *found;
 }
 
-Json row_json(const ComparisonRow& row) {
-  Json json = Json::object({{"policy", row.name}, {key::kCarrySoc, row.carry_soc}});
-  add_figures(row, json);
-  return json;
-}
-
 /// "KEY: A | B | C" for each of them.
 std::string what_differs(const std::vector<RunSummary>& runs) {
   std::string text;
@@ -272,10 +266,6 @@ Cell proof_cell(const RunSummary& run) {
   return text_cell(fmt::format("proved in {} states", grouped(figures.states_checked)));
 }
 
-std::string state_text(const RunSummary& run) {
-  return run.trouble.empty() ? run.record.state() : run.trouble;
-}
-
 const Evaluation* exported_days(const RunSummary& run, EvaluationField field) {
   const NamedEvaluation* found = find_evaluation(run.evaluations, kCorrectedName);
   return found == nullptr ? nullptr : &(found->*field);
@@ -325,7 +315,7 @@ SortTable run_table(const std::vector<RunSummary>& runs, const fs::path& page) {
     const std::string seed = run.record.value("seed");
     const std::string rules = value_text(run.record, kRulesKey);
     std::vector<Cell> row{run_cell(run, page),
-                          text_cell(state_text(run)),
+                          text_cell(run.trouble.empty() ? run.record.state() : run.trouble),
                           proof_cell(run),
                           text_cell(rules),
                           {html_escaped(seed), seed}};
@@ -432,7 +422,9 @@ Json summary_json(const RunSummary& run) {
   Json policies = Json::list();
   for (const auto field : {&NamedEvaluation::day_reset, &NamedEvaluation::carried_over}) {
     for (const ComparisonRow& row : comparison_rows(run.evaluations, field)) {
-      policies.add(row_json(row));
+      Json policy = Json::object({{"policy", row.name}, {key::kCarrySoc, row.carry_soc}});
+      add_figures(row, policy);
+      policies.add(std::move(policy));
     }
   }
   json.set("policies", std::move(policies));

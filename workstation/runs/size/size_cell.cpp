@@ -109,14 +109,6 @@ std::vector<MarketDay> traded_days(const MarketSteps& market, const Evaluation& 
   return days;
 }
 
-/// One plan over the whole series, as in walk_forward() for each month.
-double foresight_profit(const MarketSteps& market, const RunConfig& config,
-                        const std::vector<MarketDay>& days) {
-  const auto policy = make_baseline(kForesightName, market, config.battery);
-  return evaluate_carried_over(market, days, *policy, config.battery, config.initial_soc_frac)
-      .profit_eur_per_day_per_mwh();
-}
-
 SizeClass trade_class(const RunConfig& config, const SizeBacktest& backtest) {
   const FoldPolicy make = [&](const Fold& fold) {
     return make_policy(backtest.policy, fold.market, config.battery);
@@ -124,8 +116,12 @@ SizeClass trade_class(const RunConfig& config, const SizeBacktest& backtest) {
   std::vector<StepRecord> steps;
   WalkForward walked = walk_forward(backtest.policy, backtest.folds, make, config.battery,
                                     config.initial_soc_frac, backtest.market, false, &steps);
-  const double bound =
-      foresight_profit(backtest.market, config, traded_days(backtest.market, walked.total));
+  // One plan over the whole series, as in walk_forward() for each month.
+  const MarketSteps& market = backtest.market;
+  const auto foresight = make_baseline(kForesightName, market, config.battery);
+  const double bound = evaluate_carried_over(market, traded_days(market, walked.total), *foresight,
+                                             config.battery, config.initial_soc_frac)
+                           .profit_eur_per_day_per_mwh();
   const double profit = walked.total.profit_eur_per_day_per_mwh();
   return {config.battery, std::move(walked.total), month_peaks(steps, config.battery.power_w_max),
           bound > 0 ? profit / bound : NAN};

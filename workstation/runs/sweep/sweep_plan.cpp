@@ -193,12 +193,6 @@ std::string keep_rules(SweepPlan& plan, const std::string& text) {
   return stem;
 }
 
-/// "section.key" of "[section] key".
-std::string dotted(const std::string& listed) {
-  const std::size_t end = listed.find(']');
-  return listed.substr(1, end - 1) + "." + listed.substr(end + 2);
-}
-
 /// Settings of a class that differ from the sweep's configuration.
 Entries class_settings(const std::string& name, const RunConfig& config, const std::string& rules,
                        SweepPlan& plan) {
@@ -206,7 +200,9 @@ Entries class_settings(const std::string& name, const RunConfig& config, const s
   if (!rules.empty()) settings.emplace_back(setting::kRules, keep_rules(plan, rules));
   settings.emplace_back(setting::kClass, name);
   for (const ChangedKey& changed : changed_keys(config, plan.base)) {
-    settings.emplace_back(dotted(changed.key), changed.value);
+    const std::size_t end = changed.key.find(']');  // "[section] key" becomes "section.key"
+    settings.emplace_back(changed.key.substr(1, end - 1) + "." + changed.key.substr(end + 2),
+                          changed.value);
   }
   return settings;
 }

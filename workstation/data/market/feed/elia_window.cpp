@@ -29,17 +29,6 @@ std::string where_of(const FetchWindow& window) {
                                  instant(window.from_utc_s), instant(window.until_utc_s)));
 }
 
-std::string rows_url(const std::string& base_url, const FetchWindow& window) {
-  return fmt::format(
-      "{}/catalog/datasets/{}/exports/csv?where={}&order_by=datetime&timezone=UTC&delimiter=%3B",
-      base_url, window.dataset, where_of(window));
-}
-
-std::string total_url(const std::string& base_url, const FetchWindow& window) {
-  return fmt::format("{}/catalog/datasets/{}/records?where={}&limit=1&timezone=UTC", base_url,
-                     window.dataset, where_of(window));
-}
-
 /// Drops the rows whose interval [from, until) is `unwanted`.
 template <typename Unwanted>
 void drop_rows(MarketRows& rows, Unwanted unwanted) {
@@ -141,8 +130,10 @@ std::optional<WindowDownload> get_page(const FetchRequest& request, const FetchW
     download.rows = rows_in_window(body, window.dataset, window, request.now_utc_s);
     download.text = std::move(body);
   };
-  const RetriedRequest retried{rows_url(request.base_url, window), window.dataset,
-                               describe_window(request, window),
+  const std::string url = fmt::format(
+      "{}/catalog/datasets/{}/exports/csv?where={}&order_by=datetime&timezone=UTC&delimiter=%3B",
+      request.base_url, window.dataset, where_of(window));
+  const RetriedRequest retried{url, window.dataset, describe_window(request, window),
                                "run the same command again, finished windows are kept",
                                "run the same command again then, finished windows are kept"};
   if (!get_with_retries(retried, request.retry, request.sleep, interrupted, read)) return {};
@@ -154,9 +145,11 @@ std::optional<WindowDownload> get_page(const FetchRequest& request, const FetchW
 std::optional<std::size_t> server_total(const FetchRequest& request, const FetchWindow& window,
                                         const std::atomic<bool>& interrupted) {
   constexpr double kDeadline_s = 30;
+  const std::string url =
+      fmt::format("{}/catalog/datasets/{}/records?where={}&limit=1&timezone=UTC", request.base_url,
+                  window.dataset, where_of(window));
   const HttpOutcome outcome =
-      http_get(total_url(request.base_url, window), interrupted,
-               {.deadline_s = kDeadline_s, .bytes_max = std::size_t{1} << 20});
+      http_get(url, interrupted, {.deadline_s = kDeadline_s, .bytes_max = std::size_t{1} << 20});
   if (outcome.kind != Kind::kDone) return std::nullopt;
   const Json json = Json::parse(outcome.body);
   const std::optional<double> total = json.value()["total_count"].number();

@@ -98,11 +98,15 @@ std::pair<std::size_t, std::size_t> matches(std::span<const double> prices, Want
 struct Findings {
   std::vector<Finding> all;
 
-  void error(std::string_view name, const Column& column, std::size_t row, std::string what) {
-    all.push_back({name, true, std::move(what), column.utc_s(row)});
+  template <typename... Args>
+  void error(std::string_view name, const Column& column, std::size_t row,
+             fmt::format_string<Args...> what, Args&&... args) {
+    all.push_back({name, true, fmt::format(what, std::forward<Args>(args)...), column.utc_s(row)});
   }
-  void warning(std::string_view name, std::int64_t utc_s, std::string what) {
-    all.push_back({name, false, std::move(what), utc_s});
+  template <typename... Args>
+  void warning(std::string_view name, std::int64_t utc_s, fmt::format_string<Args...> what,
+               Args&&... args) {
+    all.push_back({name, false, fmt::format(what, std::forward<Args>(args)...), utc_s});
   }
 };
 
@@ -120,38 +124,32 @@ void check_constant(const Column& column, Findings& findings) {
   if (column.count < column.judged_min() || !column.is_constant) return;
   const double price = column.prices[*column.first];
   findings.error("constant", column, *column.first,
-                 fmt::format("every {} price is {:g}, in {}; useless for training, download the "
-                             "prices again",
-                             column.name, price, counted(column.count, column.row)));
+                 "every {} price is {:g}, in {}; useless for training, download the prices again",
+                 column.name, price, counted(column.count, column.row));
 }
 
 void check_sentinels(const Column& column, Findings& findings) {
   const auto [count, first] = matches(column.prices, column.is_sentinel);
   if (count == 0) return;
-  findings.error(
-      "sentinel", column, first,
-      fmt::format("{} price {} stands for \"no price\" ({}); leave it out if your source says "
-                  "so",
-                  column.name, column.prices[first], counted(count, column.row)));
+  findings.error("sentinel", column, first,
+                 "{} price {} stands for \"no price\" ({}); leave it out if your source says so",
+                 column.name, column.prices[first], counted(count, column.row));
 }
 
 void check_unit(const Column& column, Findings& findings) {
   if (column.count < column.judged_min() || column.is_constant) return;
   if (column.size_max < kUnitLowMax) {
-    findings.error(
-        "price-unit", column, *column.first,
-        fmt::format("no {} price exceeds {:g}: EUR/kWh? prices are in EUR/MWh, multiply by "
-                    "1000",
-                    column.name, column.size_max));
+    findings.error("price-unit", column, *column.first,
+                   "no {} price exceeds {:g}: EUR/kWh? prices are in EUR/MWh, multiply by 1000",
+                   column.name, column.size_max);
   }
   if (column.size_max < kUnitHighMin) return;
   const double median = median_size(column);
   if (median >= kUnitHighMin && median <= kUnitHighMax) {
-    findings.error(
-        "price-unit", column, *column.first,
-        fmt::format("half of the {} prices exceed {:.0f}: cents? prices are in EUR/MWh, divide "
-                    "by 100",
-                    column.name, median));
+    findings.error("price-unit", column, *column.first,
+                   "half of the {} prices exceed {:.0f}: cents? prices are in EUR/MWh, divide "
+                   "by 100",
+                   column.name, median);
   }
 }
 
@@ -159,12 +157,10 @@ void check_range(const Column& column, Findings& findings) {
   const auto is_beyond = [](double price) { return std::fabs(price) > kPriceMaxEurPerMwh; };
   const auto [count, first] = matches(column.prices, is_beyond);
   if (count == 0) return;
-  findings.error(
-      "price-range", column, first,
-      fmt::format("{} price {} is beyond {:.0f} EUR/MWh, more than any market allows ({}); "
-                  "correct it or leave it empty",
-                  column.name, column.prices[first], kPriceMaxEurPerMwh,
-                  counted(count, column.row)));
+  findings.error("price-range", column, first,
+                 "{} price {} is beyond {:.0f} EUR/MWh, more than any market allows ({}); "
+                 "correct it or leave it empty",
+                 column.name, column.prices[first], kPriceMaxEurPerMwh, counted(count, column.row));
 }
 
 /// Kept: the most expensive minutes of a year are the most valuable ones.
@@ -177,9 +173,9 @@ void check_unusual(const Column& column, Findings& findings) {
   const auto [count, first] = matches(column.prices, is_unusual);
   if (count == 0) return;
   findings.warning("unusual-price", column.utc_s(first),
-                   fmt::format("{} price {} is beyond {:.0f} .. {:.0f} EUR/MWh ({}): accepted",
-                               column.name, column.prices[first], column.usual_min_eur_per_mwh,
-                               column.usual_max_eur_per_mwh, counted(count, column.row)));
+                   "{} price {} is beyond {:.0f} .. {:.0f} EUR/MWh ({}): accepted", column.name,
+                   column.prices[first], column.usual_min_eur_per_mwh, column.usual_max_eur_per_mwh,
+                   counted(count, column.row));
 }
 
 /// Usual spacing of rows in minutes; 1 if there are too few.
@@ -203,12 +199,11 @@ void check_row_step(const Column& column, Findings& findings) {
   if (!column.first) return;
   const std::size_t step = usual_step(column.prices, 0, 1);
   if (step > 1) {
-    findings.error(
-        "row-step", column, *column.first,
-        fmt::format("{} prices come every {} minutes, but a minute file has one per minute; "
-                    "'bess-train prices reconstruct --quarter-hours' makes minutes from "
-                    "quarter-hours",
-                    column.name, step));
+    findings.error("row-step", column, *column.first,
+                   "{} prices come every {} minutes, but a minute file has one per minute; "
+                   "'bess-train prices reconstruct --quarter-hours' makes minutes from "
+                   "quarter-hours",
+                   column.name, step);
     return;
   }
   const std::size_t quarter_hour = kSecondsPerQuarterHour / 60;
@@ -217,11 +212,10 @@ void check_row_step(const Column& column, Findings& findings) {
       kSecondsPerQuarterHour / 60);
   const std::size_t rows_apart = usual_step(column.prices, begin, quarter_hour);
   if (rows_apart > quarter_hour) {
-    findings.error(
-        "row-step", column, *column.first,
-        fmt::format("{} prices come every {} minutes, but the market settles every 15; get "
-                    "quarter-hours",
-                    column.name, rows_apart));
+    findings.error("row-step", column, *column.first,
+                   "{} prices come every {} minutes, but the market settles every 15; get "
+                   "quarter-hours",
+                   column.name, rows_apart);
   }
 }
 
@@ -232,11 +226,10 @@ void check_frequent_sentinels(const Column& column, Findings& findings) {
         matches(column.prices, [wanted](double price) { return price == wanted; });
     const double share = static_cast<double>(count) / static_cast<double>(column.count);
     if (share <= kAlsoPricesShareMax) continue;
-    findings.warning(
-        "sentinel", column.utc_s(first),
-        fmt::format("{} price {} in {:.1f} % of the minutes: is it what your source writes "
-                    "for \"no price\"? then leave the field empty",
-                    column.name, wanted, 100 * share));
+    findings.warning("sentinel", column.utc_s(first),
+                     "{} price {} in {:.1f} % of the minutes: is it what your source writes "
+                     "for \"no price\"? then leave the field empty",
+                     column.name, wanted, 100 * share);
   }
 }
 
@@ -257,12 +250,11 @@ void check_settled_changes(const MinuteSeries& series, const Column& settled, Fi
   }
   if (changing == 0) return;
   const bool swapped = changing > 100 && still_indicative * 10 > changing * 9;
-  findings.error(
-      "settled-changes", settled, first,
-      fmt::format("the settled price changes within its quarter-hour, from {:g} to {:g} ({}); {}",
-                  series.settled[first - 1], series.settled[first], counted(changing, "change"),
-                  swapped ? "the indicative price does not: are the two columns swapped?"
-                          : "a quarter-hour has one settled price, correct the rows"));
+  findings.error("settled-changes", settled, first,
+                 "the settled price changes within its quarter-hour, from {:g} to {:g} ({}); {}",
+                 series.settled[first - 1], series.settled[first], counted(changing, "change"),
+                 swapped ? "the indicative price does not: are the two columns swapped?"
+                         : "a quarter-hour has one settled price, correct the rows");
 }
 
 void check_frozen(const Column& column, Findings& findings) {
@@ -279,8 +271,8 @@ void check_frozen(const Column& column, Findings& findings) {
   }
   if (longest < column.judged_min()) return;
   findings.warning("frozen", column.utc_s(start_of_longest),
-                   fmt::format("the {} price stays at {:g} for {} minutes; did the source stop?",
-                               column.name, column.prices[start_of_longest], longest));
+                   "the {} price stays at {:g} for {} minutes; did the source stop?", column.name,
+                   column.prices[start_of_longest], longest);
 }
 
 void check_copied(const Column& settled, const Column& indicative, Findings& findings) {
@@ -310,13 +302,11 @@ void check_gaps(const Column& column, Findings& findings) {
   const std::int64_t missing_min = minutes_in(gaps);
   const double share = static_cast<double>(missing_min) / static_cast<double>(column.prices.size());
   if (largest.minutes() < kGapWorthNaming_min && share <= kGapShareMax) return;
-  findings.warning(
-      "gaps", largest.until_utc_s,
-      fmt::format("{} price: {}, {} of {} minutes missing; the largest, {} minutes, from {} "
-                  "to {}",
-                  column.name, counted(gaps.size(), "gap"), missing_min, column.prices.size(),
-                  largest.minutes(), utc_text(largest.from_utc_s).view(),
-                  utc_text(largest.until_utc_s).view()));
+  findings.warning("gaps", largest.until_utc_s,
+                   "{} price: {}, {} of {} minutes missing; the largest, {} minutes, from {} to {}",
+                   column.name, counted(gaps.size(), "gap"), missing_min, column.prices.size(),
+                   largest.minutes(), utc_text(largest.from_utc_s).view(),
+                   utc_text(largest.until_utc_s).view());
 }
 
 Column minute_column(const char* name, const std::vector<double>& prices,
@@ -349,10 +339,9 @@ void check_days(const DayAheadSeries& series, const Column& column, Findings& fi
   const std::vector<IncompleteDay> incomplete = incomplete_days(series);
   if (!incomplete.empty()) {
     const IncompleteDay& day = incomplete.front();
-    findings.warning(
-        "gaps", series.start_utc_s,
-        fmt::format("{} with fewer day-ahead prices than quarter-hours, first {}: {} of {}",
-                    counted(incomplete.size(), "day"), day.date, day.prices, day.quarter_hours));
+    findings.warning("gaps", series.start_utc_s,
+                     "{} with fewer day-ahead prices than quarter-hours, first {}: {} of {}",
+                     counted(incomplete.size(), "day"), day.date, day.prices, day.quarter_hours);
   }
   const std::int64_t into_day_s =
       series.start_utc_s - local_midnight_utc_s(local_date_of(series.start_utc_s));
@@ -362,11 +351,10 @@ void check_days(const DayAheadSeries& series, const Column& column, Findings& fi
   for (std::size_t q = before + kDayOfPrices; q + kDayOfPrices <= series.size(); ++q) {
     const bool midnight = local_minute_of(series.utc_s(q)).minute_of_day == 0;
     if (!midnight || !repeats_day_before(series, q)) continue;
-    return findings.error(
-        "repeated-day", column, q,
-        fmt::format("the day-ahead prices of {} are those of the previous day: an old "
-                    "answer? download the day again",
-                    format_local_date(local_date_of(series.utc_s(q)))));
+    return findings.error("repeated-day", column, q,
+                          "the day-ahead prices of {} are those of the previous day: an old "
+                          "answer? download the day again",
+                          format_local_date(local_date_of(series.utc_s(q))));
   }
 }
 
