@@ -17,7 +17,6 @@
 #include "workstation/runs/chain/common_options.h"
 #include "workstation/runs/chain/folder_lock.h"
 #include "workstation/runs/chain/price_input.h"
-#include "workstation/runs/chain/rule_files.h"
 #include "workstation/runs/run/run_record.h"
 
 namespace bess {

@@ -15,7 +15,6 @@
 #include "workstation/data/env/evaluate.h"
 #include "workstation/policy/planners/baselines.h"
 #include "workstation/report/comparison.h"
-#include "workstation/report/evaluation_days.h"
 #include "workstation/runs/chain/common_options.h"
 #include "workstation/runs/chain/policy_factory.h"
 #include "workstation/runs/chain/price_input.h"

@@ -16,7 +16,6 @@
 #include "workstation/runs/chain/common_options.h"
 #include "workstation/runs/chain/policy_factory.h"
 #include "workstation/runs/chain/price_input.h"
-#include "workstation/runs/chain/rule_files.h"
 
 namespace bess {
 namespace {

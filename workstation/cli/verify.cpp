@@ -12,7 +12,6 @@
 #include "workstation/correction/student/prove.h"
 #include "workstation/runs/chain/common_options.h"
 #include "workstation/runs/chain/price_input.h"
-#include "workstation/runs/chain/rule_files.h"
 
 namespace bess {
 namespace {

@@ -8,7 +8,7 @@
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "shared/units_and_limits.h"
-#include "workstation/report/evaluation_days.h"
+#include "workstation/report/comparison.h"
 #include "workstation/report/foresight_gap.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/page_data.h"

@@ -6,7 +6,6 @@
 #include "shared/host/minute_file.h"
 #include "workstation/runs/chain/common_options.h"
 #include "workstation/runs/chain/price_input.h"
-#include "workstation/runs/chain/rule_files.h"
 #include "workstation/runs/run/run_record.h"
 
 namespace bess {

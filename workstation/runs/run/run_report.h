@@ -8,7 +8,6 @@
 #include "shared/host/json.h"
 #include "workstation/data/env/market_steps.h"
 #include "workstation/report/comparison.h"
-#include "workstation/report/evaluation_days.h"
 #include "workstation/report/report.h"
 #include "workstation/report/report_tables.h"
 #include "workstation/runs/chain/run_config.h"

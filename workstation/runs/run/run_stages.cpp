@@ -17,7 +17,7 @@
 #include "workstation/correction/student/certificate.h"
 #include "workstation/correction/student/correct_and_prove.h"
 #include "workstation/correction/student/export.h"
-#include "workstation/report/evaluation_days.h"
+#include "workstation/report/comparison.h"
 #include "workstation/report/figures/curves.h"
 #include "workstation/runs/chain/chain_steps.h"
 #include "workstation/runs/chain/folder_lock.h"

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "workstation/base/answer.h"
+#include "workstation/runs/chain/common_options.h"
 #include "workstation/runs/chain/price_input.h"
-#include "workstation/runs/chain/rule_files.h"
 #include "workstation/runs/chain/run_config.h"
 
 namespace bess {
