@@ -1,7 +1,7 @@
 // Edge side of the equality with the workstation: drawn weeks go through the day-ahead store, the
 // planner, the exchange and a student by outlook (tests/data/golden/outlook_student), and every
 // day's decisions have the workstation's checksum (workstation/correction/student/
-// outlook_equality_test.cpp, which also writes the golden file).
+// outlook_student_test.cpp, which also writes the golden file).
 #include <gtest/gtest.h>
 
 #include <algorithm>

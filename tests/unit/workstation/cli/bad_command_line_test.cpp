@@ -2,15 +2,24 @@
 // bad command line and 1 for bad input, and nothing is written.
 #include "tests/support/bad_command_lines.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
 
+#include <cstring>
 #include <filesystem>
 
+#include "shared/host/file.h"
 #include "shared/host/minute_file.h"
+#include "shared/host/toml_document.h"
+#include "tests/support/signal_handler.h"
 #include "tests/support/small_market.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
+#include "tests/support/toml_mistakes.h"
 #include "tests/support/train_commands.h"
+#include "tests/support/user_error_of.h"
+#include "workstation/cli/commands.h"
 #include "workstation/correction/student/student_file.h"
 
 namespace bess {
@@ -151,6 +160,80 @@ TEST_F(BadTrainCommandLine, TheVersionShowsCommitCompilerAndInstructions) {
                                   "bess-train [0-9.]+\ncommit [-0-9a-z]+, (g\\+\\+|clang) [0-9].*, "
                                   "(x86-64|aarch64|arm).*\n"));
   EXPECT_EQ(version.exit_code, 0);
+}
+
+// Exit codes of bess-train, as scripts use them.
+
+TEST(Program, OutputThatCannotBeWrittenIsAnError) {
+  if (!std::filesystem::is_character_file("/dev/full")) {
+    GTEST_SKIP() << "needs /dev/full, which is absent";
+  }
+  ChildProcess program({"/bin/sh", "-c", BESS_TRAIN_PROGRAM " config > /dev/full"});
+  EXPECT_THAT(program.read_all(), Names(std::string("bess-train ") + std::strerror(ENOSPC)));
+  EXPECT_EQ(program.wait(), 1);
+}
+
+TEST(Program, AByteOrderMarkBeforeTheConfigurationIsSkipped) {
+  const TemporaryFolder folder;
+  const std::string config = folder.write("run.toml", "\xEF\xBB\xBF[train]\nsteps = 7\n");
+  const CommandResult result = run_train({"config", "--config", config});
+  EXPECT_THAT(result.output, testing::HasSubstr("steps = 7 "));
+  EXPECT_EQ(result.exit_code, 0);
+}
+
+TEST(Program, CtrlCEndsACommandThatHasNothingToSave) {
+  const TemporaryFolder folder;
+  const auto out = folder.file("market.csv.gz");
+  ChildProcess program({BESS_TRAIN_PROGRAM, "prices", "simulate", "--days", "7000", "--out", out});
+  ASSERT_TRUE(catches(program.pid(), SIGINT));  // far too soon for 7,000 days
+  program.signal(SIGINT);
+  EXPECT_EQ(program.wait(), 3);
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+// Every command that writes a file refuses to overwrite its input, before it reads it.
+
+TEST(OutputIsInput, IsRefusedAndTheFileStays) {
+  const struct {
+    const char* line;   ///< IN is the file that is read, OUT another name of it
+    const char* names;  ///< options that the error names
+  } cases[] = {
+      {"train --prices IN --out OUT", "--out --prices"},
+      {"train --prices IN --out FOLDER/t.bin --curve-out OUT", "--curve-out --prices"},
+      {"distil --prices IN --teacher FOLDER/none --out OUT", "--out --prices"},
+      {"distil --prices FOLDER/none --teacher IN --out OUT", "--out --teacher"},
+      {"evaluate --prices IN --policy rbc --csv OUT", "--csv --prices"},
+      {"evaluate --prices IN --policy rbc --days-out OUT", "--days-out --prices"},
+      {"evaluate --prices FOLDER/none --fit IN --policy rbc --steps-out OUT", "--steps-out --fit"},
+      {"evaluate --prices FOLDER/none --policy IN --csv OUT", "--csv --policy"},
+      {"prices import IN --out OUT", "--out"},
+      {"prices reconstruct --quarter-hours IN --out OUT", "--out --quarter-hours"},
+      {"export --student IN --out OUT", "--out --student"},
+      {"backtest --prices IN --out FOLDER", "--out --prices"},
+      {"run --prices OUT --out FOLDER", "--out --prices"},
+      {"run --config OUT --out FOLDER", "--out --config"},
+      {"run --from-teacher OUT --out FOLDER", "--out --from-teacher"},
+  };
+  for (const auto& c : cases) {
+    SCOPED_TRACE(c.line);
+    const TemporaryFolder folder;
+    // Outputs of a run and a backtest have fixed names: the input is one of them.
+    const std::string in = folder.write("backtest.csv", "precious");
+    const std::string link = folder.file("report.html");
+    std::filesystem::create_symlink(in, link);
+    std::string line = c.line;
+    for (const auto& [what, value] :
+         {std::pair("IN", in), std::pair("OUT", link), std::pair("FOLDER", folder.file("."))}) {
+      const std::size_t at = line.find(what);
+      if (at != line.npos) line.replace(at, std::string(what).size(), value);
+    }
+    CommandLine command_line("bess-train", "", "");
+    ProgramCommand root = command_line.root();
+    add_commands(root);
+    EXPECT_THAT(refusal_of([&] { command_line.parse(line); }), Names(c.names));
+    EXPECT_EQ(read_file(in), "precious");
+    EXPECT_TRUE(std::filesystem::is_symlink(link));
+  }
 }
 
 }  // namespace

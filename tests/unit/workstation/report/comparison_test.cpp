@@ -6,6 +6,7 @@
 
 #include "tests/support/tokens.h"
 #include "tests/support/user_error_of.h"
+#include "tests/unit/workstation/report/report_test_support.h"
 #include "workstation/report/figures/curves.h"
 #include "workstation/report/figures/walk_forward_figure.h"
 
@@ -164,6 +165,41 @@ TEST(OmegaSweep, TableAndCsvCountTheSame) {
   EXPECT_THAT(table, Names("1000 421"));
   EXPECT_THAT(table, HasSubstr("    -4.0    6.0        -\n"));
   EXPECT_THAT(table, HasSubstr("87.50 %    105.0   10.0        -     +5.0    0.0        -\n"));
+}
+
+// Days of a figure, and the training's use of later ones.
+
+/// January and February: February's test days are after all training, January's are not.
+TEST(JudgedDays, SaysTheRuleTheSpanAndWhatLearningSaw) {
+  const JudgedDays test = judged_days(small_market(), Split::kTest);
+  EXPECT_THAT(judged_days_text(test), Names("26 9 2 2023-01-26 2023-02-28 2023-02-25 6"));
+  EXPECT_EQ(judged_days_json(test).line(),
+            "{\"split\":\"test\",\"local_days\":\"26 to the end\",\"days\":9,\"months\":2,"
+            "\"from\":\"2023-01-26\",\"to\":\"2023-02-28\",\"last_learnt_day\":\"2023-02-25\","
+            "\"days_before_last_learnt\":6}");
+}
+
+TEST(JudgedDays, DaysAfterAllLearningAreSaidToBe) {
+  JudgedDays later = judged_days(small_market(), Split::kAll);
+  later.last_learnt = "2022-12-25";
+  EXPECT_THAT(judged_days_text(later), Names("1 59 2 2023-01-01 2023-02-28 2022-12-25"));
+}
+
+TEST(JudgedDays, TheTextIsThatOfTheSplit) {
+  for (const auto& [split, first, last] :
+       {std::tuple(Split::kTrain, 1, 20), std::tuple(Split::kValidation, 21, 25),
+        std::tuple(Split::kTest, 26, 31), std::tuple(Split::kHeldOut, 21, 31)}) {
+    int earliest = 99;
+    int latest = 0;
+    for (const MarketDay& day : small_market().days_of(split)) {
+      earliest = std::min(earliest, day.day);
+      latest = std::max(latest, day.day);
+    }
+    EXPECT_EQ(earliest, first);
+    EXPECT_EQ(latest, last);
+    EXPECT_THAT(judged_days_text(judged_days(small_market(), split)),
+                Names(std::to_string(first) + (last == 31 ? "" : " " + std::to_string(last))));
+  }
 }
 
 }  // namespace

@@ -1,11 +1,13 @@
 #include "workstation/runs/chain/run_config.h"
 
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "shared/host/file.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 #include "tests/support/user_error_of.h"
+#include "workstation/runs/chain/common_options.h"
 
 namespace bess {
 namespace {
@@ -139,6 +141,28 @@ TEST(ChangedKeys, EachIsNamedWithBothValues) {
   EXPECT_THAT(changed_keys_text(config),
               Names("[market] observation_delay_min 2 1 [battery] wear_eur_per_mwh 10.5 0 [train] "
                     "method \"sdp\" \"c51\""));
+}
+
+namespace fs = std::filesystem;
+
+TEST(SourceTree, IsFoundFromAnyFolderInIt) {
+  const TemporaryFolder folder;
+  const fs::path tree = folder.file("bess");
+  write_file(tree / "edge/CMakeLists.txt", "");
+  write_file(tree / "edge/generated/student_weights.h", "");
+  fs::create_directories(tree / "build/deep");
+  for (const fs::path& at : {tree, tree / "edge", tree / "build/deep"}) {
+    EXPECT_EQ(header_in_tree_around(at), tree / "edge/generated/student_weights.h") << at;
+  }
+  EXPECT_EQ(header_in_tree_around(folder.file("")), std::nullopt);
+}
+
+TEST(SourceTree, AFolderThatOnlyLooksLikeItIsNone) {
+  const TemporaryFolder folder;  // remains of an export into the wrong folder
+  write_file(folder.file("edge/generated/student_weights.h"), "");
+  EXPECT_EQ(header_in_tree_around(folder.file(".")), std::nullopt);
+  EXPECT_EQ(header_in_tree_around("/"), std::nullopt);
+  EXPECT_EQ(header_in_tree_around(""), std::nullopt);
 }
 
 }  // namespace

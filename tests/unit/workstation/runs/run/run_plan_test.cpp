@@ -1,23 +1,28 @@
 // Run folder: refusals, and defaults, before anything is written.
 #include "workstation/runs/run/run_plan.h"
-#include "workstation/correction/student/student_file.h"
 
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
 
 #include "shared/host/file.h"
 #include "tests/support/small_market.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 #include "tests/support/user_error_of.h"
+#include "workstation/correction/student/student_file.h"
 #include "workstation/runs/chain/folder_lock.h"
 #include "workstation/runs/run/run_record.h"
+#include "workstation/runs/run/run_stages.h"
 
 namespace bess {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::Not;
+
+namespace fs = std::filesystem;
 
 class RunPlanning : public testing::Test {
  protected:
@@ -253,6 +258,20 @@ TEST_F(RunPlanning, AStageHoldsOnlyWhileItsFilesAreWhatTheyWere) {
   }
   fs::remove(out);
   EXPECT_EQ(record.holds("work", {"in"}, plan.folder), nullptr);
+}
+
+// The table of stages: inputs exist before they are read.
+
+TEST(StageTable, EachStageReadsWhatAnEarlierOneWrote) {
+  std::set<std::string> written;
+  int number = 0;
+  for (const RunStages::Stage& stage : RunStages::stages()) {
+    for (const std::string& input : stage.inputs) EXPECT_TRUE(written.contains(input)) << input;
+    EXPECT_GE(stage.number, number) << stage.name;
+    number = stage.number;
+    written.insert(stage.outputs.begin(), stage.outputs.end());
+  }
+  EXPECT_EQ(RunStages::count(), number);
 }
 
 }  // namespace

@@ -6,21 +6,28 @@
 #include <stdlib.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "shared/host/file.h"
+#include "shared/host/user_error.h"
+#include "tests/support/integer_nets.h"
+#include "tests/support/small_market.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tokens.h"
 #include "tests/support/user_error_of.h"
 #include "tests/unit/workstation/report/report_test_support.h"
 #include "workstation/data/env/evaluate.h"
-#include "workstation/report/evaluation_days.h"
+#include "workstation/report/comparison.h"
 #include "workstation/report/headline.h"
+#include "workstation/runs/run/refresh.h"
+#include "workstation/runs/run/run_backtest.h"
 
 namespace bess {
 namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::MatchesRegex;
 using testing::Not;
 
 /// Three days, the first of which earned `profit_eur`; thirds do not end in binary.
@@ -171,8 +178,6 @@ TEST(RunSummaries, AnUnfinishedRunIsNamedWithTheRemedy) {
   EXPECT_THAT(refusal(), AllOf(Names("report.html run --from-teacher"), Not(Names("--resume"))));
 }
 
-using testing::MatchesRegex;
-
 class RunFacts : public testing::Test {
  protected:
   ~RunFacts() override { unsetenv("SOURCE_DATE_EPOCH"); }
@@ -216,6 +221,228 @@ TEST_F(RunFacts, AFixedDateLeavesOutWhatDiffers) {
   for (const char* name : {"run", "host", "command", "CPU time", "stages"}) {
     EXPECT_EQ(value_in(all, name), "") << name;
   }
+}
+
+// Walk-forward figure of a run: of its own prices, seed and keys, or none, with the reason.
+
+RunRecord record_of(const RunConfig& config) {
+  RunRecord record;
+  record.identity = identity_of(config, "crc32 0badcafe, 7 minutes from 2023-01-01T00:00:00Z", "");
+  return record;
+}
+
+void write_backtest(const RunFolder& folder, const std::string& learnt_from, const char* policy) {
+  Json json = Json::object({{"learnt_from", learnt_from}});
+  Json policies = Json::list();
+  policies.add(Json::object({{"policy", "rbc"}, {"profit_eur_per_day_per_mwh", 1}}));
+  policies.add(Json::object({{"policy", policy},
+                             {"days", 90},
+                             {"months", 3},
+                             {"profit_eur_per_day_per_mwh", 412.3456},
+                             {"profit_standard_error", 20.25},
+                             {"profit_standard_error_by_month", 31.5}}));
+  json.set("policies", std::move(policies));
+  write_file(folder.path / kRunsBacktest / kBacktestJson, json.text());
+}
+
+TEST(RunBacktest, IsTakenWhenItIsOfTheSamePricesSeedAndKeys) {
+  const TemporaryFolder temporary;
+  const RunFolder folder{temporary.file("run")};
+  RunConfig config;
+  config.set_seed(7);
+  const RunRecord record = record_of(config);
+  EXPECT_THAT(walk_forward_text(walk_forward_of(folder, record)),
+              Names("bess-train backtest --seed 7 --out RUN/backtest"));
+  EXPECT_EQ(with_run_folder("--out RUN/backtest RUN/a", "x/run"), "--out x/run/backtest x/run/a");
+  const std::string identity = learning_identity(record.value("prices"), config);
+  write_backtest(folder, identity, kChainName);
+  const WalkForwardOfRun walk = walk_forward_of(folder, record);
+  ASSERT_TRUE(walk.figure.has_value()) << walk.why_none;
+  EXPECT_THAT(walk_forward_text(walk), Names("412.3 20.2 31.5 90 3"));
+  EXPECT_THAT(walk_forward_html(walk), HasSubstr("<a href=\"backtest/backtest.html\">"));
+  EXPECT_THAT(walk_forward_json(*walk.figure).line(),
+              HasSubstr("\"profit_eur_per_day_per_mwh\":412.3456"));
+}
+
+TEST(RunBacktest, OfAnythingElseIsNotTaken) {
+  const TemporaryFolder temporary;
+  const RunFolder folder{temporary.file("run")};
+  RunConfig config;
+  config.set_seed(7);
+  const RunRecord record = record_of(config);
+  RunConfig other = config;
+  other.battery.wear_eur_per_mwh = 25;
+  RunConfig seeded = config;
+  seeded.set_seed(8);
+  for (const std::string& identity :
+       {learning_identity(record.value("prices"), other),
+        learning_identity(record.value("prices"), seeded),
+        learning_identity("crc32 00000000, 7 minutes from 2023-01-01T00:00:00Z", config)}) {
+    write_backtest(folder, identity, kChainName);
+    const WalkForwardOfRun walk = walk_forward_of(folder, record);
+    EXPECT_FALSE(walk.figure.has_value());
+    EXPECT_THAT(walk.why_none, Names("backtest/backtest.json bess-train backtest --seed 7"));
+  }
+  write_backtest(folder, learning_identity(record.value("prices"), config), "sdp");
+  EXPECT_THAT(walk_forward_of(folder, record).why_none, Names("backtest/backtest.json student"));
+  write_file(folder.path / kRunsBacktest / kBacktestJson, "{ half of a");
+  EXPECT_FALSE(walk_forward_of(folder, record).figure.has_value());
+}
+
+// Many runs on one page: finished ones with figures, and the state of the others.
+
+class RunsPage : public testing::Test {
+ protected:
+  /// A run that earned `eur` on the second of two days of two months.
+  RunFolder make(const std::string& name, double eur, const std::string& method = "\"sdp\"") {
+    const RunFolder folder{root_.file(name)};
+    std::filesystem::create_directories(folder.path);
+    Evaluation days;
+    days.capacity_mwh = 8;
+    days.days = {{"2023-01-26", 8, 1, 2, 0.5, 3}, {"2023-02-26", eur, 1, 2, 0.5, 3}};
+    write_file(folder.file(run_file::kDays), evaluation_days_csv({{kCorrectedName, days, days}}));
+    write_file(folder.file(run_file::kReport), "<html></html>");
+    RunRecord record;
+    record.identity = {{"prices", "the same"}, {"seed", "1"}, {"[train] method", method}};
+    record.stages = {
+        {"evaluation", {}, {{run_file::kDays, file_mark(folder.file(run_file::kDays))}}, false}};
+    record.figures = RunFigures{"made by hand", "0123abcd", 6'950'033'280, 1, 2, 0};
+    save_run_record(folder, record);
+    return folder;
+  }
+
+  RunFolder make_failed(const std::string& name) {
+    const RunFolder folder = make(name, 8);
+    RunRecord record = load_run_record(folder).value();
+    record.figures.reset();
+    record.stages.push_back({"corrected student", {}, {}, true});
+    save_run_record(folder, record);
+    write_file(folder.file(run_file::kProofRounds),
+               "round,looked_at,demand,violations\n1,lattice,property 1,3\n"
+               "1,lattice,property 3,23994\n");
+    return folder;
+  }
+
+  std::string page_of(const std::vector<RunFolder>& folders) {
+    std::vector<RunSummary> runs;
+    for (const RunFolder& folder : folders) runs.push_back(load_any_run(folder));
+    return runs_page(runs, root_.file("all.html"));
+  }
+
+  TemporaryFolder root_;
+};
+
+TEST_F(RunsPage, FiguresGainsProofAndLinks) {
+  const std::string page = page_of({make("a", 24), make("b", 16)});
+  EXPECT_THAT(
+      page, AllOf(HasSubstr("<a href=\"a/report.html\">"), HasSubstr("<a href=\"b/report.html\">"),
+                  Names("6,950,033,280 0123abcd")));
+  EXPECT_THAT(page, HasSubstr("data-sort=\"2\"><span>2.0 \u00b1 1.0")) << "(8 + 24) / 2 / 8";
+  EXPECT_THAT(page, HasSubstr("data-sort=\"-0.5\"><span>\u22120.5 \u00b1 0.5"));
+  EXPECT_THAT(page, HasSubstr("data-sort=\"16\"><span>16.0")) << "the whole battery";
+}
+
+TEST_F(RunsPage, WhatRunsDifferInIsAColumn) {
+  const std::string page = page_of({make("a", 24), make("b", 16, "\"c51\"")});
+  EXPECT_THAT(page, AllOf(HasSubstr("<button type=\"button\">[train] method</button>"),
+                          HasSubstr("&quot;c51&quot;"), Not(HasSubstr("the same</span>"))));
+}
+
+TEST_F(RunsPage, AFailedRunIsALineWithWhatIsLeft) {
+  const std::string page = page_of({make_failed("failed"), make("b", 16)});
+  EXPECT_THAT(page, AllOf(HasSubstr("<a href=\"failed/report.html\">"), Names("3 23994"),
+                          HasSubstr("1.5 \u00b1 0.5")));
+}
+
+TEST_F(RunsPage, AStoppedRunSaysWhere) {
+  const RunFolder folder = make("stopped", 8);
+  RunRecord record = load_run_record(folder).value();
+  record.figures.reset();
+  save_run_record(folder, record);
+  EXPECT_THAT(page_of({folder}), Names("evaluation"));
+}
+
+TEST_F(RunsPage, EditedNumbersAreNotShown) {
+  const RunFolder folder = make("edited", 24);
+  const auto path = folder.file(run_file::kDays);
+  std::string text = read_file(path);
+  text.replace(text.find(",24,"), 4, ",99,");
+  write_file(path, text);
+  const std::string page = page_of({folder});
+  EXPECT_THAT(page, AllOf(Names("evaluation_days.csv"), Not(HasSubstr("\u00b1 1.0"))));
+}
+
+TEST_F(RunsPage, AFolderWithoutARunIsAnError) {
+  std::filesystem::create_directories(root_.file("empty"));
+  EXPECT_THROW((void)load_any_run({root_.file("empty")}), UserError);
+}
+
+// Comparison of two students: their money, their different decisions, when one is worse.
+
+/// Sells from `high` on, buys below `low`, EUR/MWh.
+StudentFile trader(int low, int high) {
+  const auto at = [](int eur) { return 8 * (eur - kLatticePriceMinEurPerMwh); };
+  return {hand_made_net(NetInput::kPrice, -1, at(low), at(high)), {}, "", {}};
+}
+
+MarketSteps fold_of_a_month() {
+  return market_of_fold(make_market_steps(small_series(75), {}),
+                        "2023-02-15 to 2023-03-16, 30 days before");
+}
+
+TEST(FoldDays, AreInARecordAndReadBack) {
+  const auto days = parse_fold_days("2023-02-15 to 2023-03-16, 30 days before");
+  ASSERT_TRUE(days);
+  EXPECT_EQ(days->name(), "2023-02-15 to 2023-03-16, 30 days before");
+  EXPECT_EQ(days->window_days, 30);
+  EXPECT_FALSE(parse_fold_days("2023-02"));
+  const MarketSteps fold = fold_of_a_month();
+  EXPECT_EQ(fold.days_of(Split::kTest).size(), 30U);
+  EXPECT_EQ(fold.days.front().date(), "2023-01-16");
+  EXPECT_EQ(fold.days.size(), 60U);
+}
+
+TEST(CandidateRun, CountsTheDecisionsThatDifferWhereTheRunsStudentIs) {
+  const MarketSteps market = fold_of_a_month();
+  const CandidateRun candidate = judge_refit(trader(50, 150), trader(50, 160), market, {});
+  std::size_t between = 0;  // where one sells and the other rests, at any charge
+  for (const MarketDay& day : market.days_of(Split::kTest)) {
+    for (const MarketStep& step : market.of(day)) {
+      const auto price = lattice_price_of(price_centi_of(step.observed_eur_per_mwh));
+      between += price >= 150 && price < 160 ? 1 : 0;
+    }
+  }
+  ASSERT_GT(between, 100U);
+  EXPECT_EQ(candidate.differing.size(), between);
+  EXPECT_EQ(candidate.decisions, 30U * 720U);
+  EXPECT_THAT(candidate_text(candidate), Names(std::to_string(between) + " discharge idle"));
+  for (const DifferingDecision& d : candidate.differing) {
+    EXPECT_EQ(d.before, Action::kDischarge);
+    EXPECT_EQ(d.now, Action::kIdle);
+  }
+  const std::string csv = differing_decisions_csv(candidate);
+  EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv, '\n')), 1 + between);
+  EXPECT_THAT(csv, testing::HasSubstr(",discharge,idle\n"));
+}
+
+TEST(CandidateRun, IsWorseBeyondItsErrorAlone) {
+  const MarketSteps market = fold_of_a_month();
+  const CandidateRun same = judge_refit(trader(50, 150), trader(50, 150), market, {});
+  EXPECT_EQ(same.gain.mean, 0);
+  EXPECT_FALSE(same.is_worse());
+  const StudentFile idle{constant_net(Action::kIdle), {}, "", {}};
+  const CandidateRun lost = judge_refit(trader(50, 150), idle, market, {});
+  EXPECT_LT(lost.gain.mean, -3 * lost.gain.errors.plain);
+  EXPECT_TRUE(lost.is_worse());
+  const CandidateRun won = judge_refit(idle, trader(50, 150), market, {});
+  EXPECT_FALSE(won.is_worse());
+  EXPECT_NEAR(won.gain.mean, -lost.gain.mean, 1e-9);
+  EXPECT_NEAR(won.gain.mean, won.now.profit_eur_per_day_per_mwh(), 1e-9) << "idle earns nothing";
+  CandidateRun near = same;
+  near.gain = {-1.0, {1.1}};
+  EXPECT_FALSE(near.is_worse());
+  near.gain.errors.plain = 0.9;
+  EXPECT_TRUE(near.is_worse());
 }
 
 }  // namespace

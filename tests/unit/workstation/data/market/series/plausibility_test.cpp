@@ -16,7 +16,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-std::vector<std::string> names_of(const std::vector<Finding>& findings) {
+std::vector<std::string> texts_of(const std::vector<Finding>& findings) {
   std::vector<std::string> names;
   for (const Finding& finding : findings)
     names.push_back(std::string(finding.name) + ": " + finding.what);
@@ -26,9 +26,9 @@ std::vector<std::string> names_of(const std::vector<Finding>& findings) {
 MinuteSeries ordinary() { return parse_minute_csv(ordinary_text(), "ordinary"); }
 
 TEST(Plausibility, RealPricesRaiseNothing) {
-  EXPECT_THAT(names_of(implausible(read_yardstick())), IsEmpty());
-  EXPECT_THAT(names_of(implausible(ordinary())), IsEmpty());
-  EXPECT_THAT(names_of(implausible(random_series("2023-01-01T00:00:00Z", 40'000, 7))), IsEmpty());
+  EXPECT_THAT(texts_of(implausible(read_yardstick())), IsEmpty());
+  EXPECT_THAT(texts_of(implausible(ordinary())), IsEmpty());
+  EXPECT_THAT(texts_of(implausible(random_series("2023-01-01T00:00:00Z", 40'000, 7))), IsEmpty());
 }
 
 TEST(Plausibility, RealDownloadsRaiseNothing) {
@@ -37,7 +37,7 @@ TEST(Plausibility, RealDownloadsRaiseNothing) {
                            "raw/ods047_head3000.csv.gz", "raw/ods161_2024-09-06.csv.gz",
                            "raw/ods161_2025-04-08.csv.gz", "benchmark_minutes_2023.csv.gz"}) {
     const JoinedMarket market = join_market(read_market_files({real_sample(name).string()}), name);
-    EXPECT_THAT(names_of(implausible(market.series)), IsEmpty()) << name;
+    EXPECT_THAT(texts_of(implausible(market.series)), IsEmpty()) << name;
   }
 }
 
@@ -45,7 +45,7 @@ TEST(Plausibility, QuarterHoursOfALaterYearRaiseNothing) {
   const std::string name = "elia_quarter_hour_2024-05_2024-12.csv.gz";
   BESS_SKIP_WITHOUT(name);
   const JoinedMarket market = join_market(read_market_files({outside_sample(name).string()}), name);
-  EXPECT_THAT(names_of(implausible(market.series)), IsEmpty());
+  EXPECT_THAT(texts_of(implausible(market.series)), IsEmpty());
 }
 
 /// Belgium settled seven quarter-hours of 2025 at -999.
@@ -54,7 +54,7 @@ TEST(Plausibility, ASettledPriceOfMinus999IsOne) {
   const std::string path = outside_sample("elia_quarter_hour_2025-01_2025-06.csv.gz").string();
   const JoinedMarket market = join_market(read_market_files({path}), "2025");
   EXPECT_EQ(std::ranges::count(market.series.settled, -999.0), 3 * kMinutesPerQuarterHour);
-  EXPECT_THAT(names_of(implausible(market.series)), IsEmpty());
+  EXPECT_THAT(texts_of(implausible(market.series)), IsEmpty());
 }
 
 MinuteSeries with_settled(double eur_per_mwh, std::size_t quarter_hours) {
@@ -68,7 +68,7 @@ MinuteSeries with_settled(double eur_per_mwh, std::size_t quarter_hours) {
 
 TEST(Plausibility, ExtremesThatMarketsHaveHadAreAcceptedAndReported) {
   for (const double price : {-999.0, 9'998.0, 15'000.0, -15'000.0}) {
-    EXPECT_THAT(names_of(implausible(with_settled(price, 1))), IsEmpty()) << price;
+    EXPECT_THAT(texts_of(implausible(with_settled(price, 1))), IsEmpty()) << price;
   }
   for (const double price : {25'907.54, -25'907.54, 99'999.0, -99'999.0, 100'000.0}) {
     const std::vector<Finding> findings = implausible(with_settled(price, 1));
@@ -87,7 +87,7 @@ TEST(Plausibility, ExtremesThatMarketsHaveHadAreAcceptedAndReported) {
 
 /// Repeated -999 is an instrument's error value: reported, and still accepted.
 TEST(Plausibility, ManyPossibleErrorValuesAreReportedAndAccepted) {
-  EXPECT_THAT(names_of(implausible(with_settled(-999, 2))), IsEmpty());
+  EXPECT_THAT(texts_of(implausible(with_settled(-999, 2))), IsEmpty());
   const std::vector<Finding> findings = implausible(with_settled(-999, 8));
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_EQ(findings[0].name, "sentinel");
@@ -116,13 +116,13 @@ TEST(Plausibility, GapsAreCounted) {
 TEST(Plausibility, APriceThatHangsIsNamed) {
   MinuteSeries series = ordinary();
   std::fill_n(series.indicative.begin() + 100, 1'500, 55.5);
-  EXPECT_THAT(names_of(implausible(series)), ElementsAre(Names("frozen 55.5 1500")));
+  EXPECT_THAT(texts_of(implausible(series)), ElementsAre(Names("frozen 55.5 1500")));
 }
 
 TEST(Plausibility, AColumnThatIsTheOtherIsNamed) {
   MinuteSeries series = ordinary();
   series.indicative = series.settled;
-  EXPECT_THAT(names_of(implausible(series)), ElementsAre(Names("copied-column")));
+  EXPECT_THAT(texts_of(implausible(series)), ElementsAre(Names("copied-column")));
 }
 
 TEST(Plausibility, AMissingLineEndIsAWarningUnlessTheRowIsWrong) {
