@@ -148,8 +148,9 @@ TEST(StudentFile, DaysAndCyclesAreShownWhereTheyAreKnown) {
 
 /// Files older than the counts: the thresholds were stored next to the weights.
 TEST(StudentFile, Version1IsStillRead) {
-  const StudentFile student =
-      load_student(BESS_SOURCE_DIR "/tests/checks/fuzz/seeds/student_file_fuzz/version_1.json");
+  const StudentFile student = load_student(BESS_SOURCE_DIR
+                                           "/tests/checks/fuzz/seeds/workstation/"
+                                           "student_file_fuzz/version_1.json");
   constexpr std::uint32_t kHashInTheFile = 374'446'160;
   EXPECT_EQ(student_weights_hash(student.net), kHashInTheFile);
   EXPECT_EQ(student.net.context, ContextClasses{}) << "by month, the only kind then";
