@@ -43,7 +43,10 @@ void set(Tables& tables, const std::string& text) {
   const std::string table = text.substr(0, dot);
   if (dot == std::string::npos || equals == std::string::npos || equals < dot ||
       !tables.contains(table)) {
-    fail("--set {}: use TABLE.KEY=VALUE with table battery, price, outlook, guard or state", text);
+    fail(
+        "--set {}: use TABLE.KEY=VALUE with table battery, price, outlook, guard, meter, limits or "
+        "state",
+        text);
   }
   tables[table][text.substr(dot + 1, equals - dot - 1)] = text.substr(equals + 1);
 }
@@ -64,6 +67,8 @@ std::string settings_of(const SiteOptions& options, const SitePrograms& programs
                    {"price", {{"history_hours", "0"}}},
                    {"outlook", {}},
                    {"guard", {}},
+                   {"meter", {}},
+                   {"limits", {}},
                    {"state", {{"folder", quoted("state")}}}};
   for (const std::string& text : options.settings) set(tables, text);
   const std::string market = "http://127.0.0.1:" + std::to_string(programs.market_port);
@@ -71,13 +76,17 @@ std::string settings_of(const SiteOptions& options, const SitePrograms& programs
   if (!outlook.empty()) {
     outlook.emplace("url", quoted(market + "/price?bzn=BE"));
   }
+  std::string more;  // tables with a key set
+  for (const char* const name : {"outlook", "meter", "limits"}) {
+    if (!tables[name].empty()) more += "[" + std::string(name) + "]\n" + lines_of(tables[name]);
+  }
   return controller_settings({.control = !options.is_watching,
                               .battery = lines_of(tables["battery"]),
                               .market = market,
                               .price = lines_of(tables["price"]),
                               .guard = lines_of(tables["guard"]),
                               .state = lines_of(tables["state"]),
-                              .tables = outlook.empty() ? "" : "[outlook]\n" + lines_of(outlook),
+                              .tables = more,
                               .clock = programs.clock});
 }
 
