@@ -96,7 +96,6 @@ TEST_F(PageSettingsTest, AMistakeNamesFileLineAndCorrection) {
       {"prot = 80\n", "prot"},
       {"hosts = [\"http://a.example\"]\n", "hosts"},
       {"hosts = [5]\n", "hosts"},
-      {"name = \"a\"\n", "name"},
   };
   for (const auto& [page, key] : bad) {
     EXPECT_THAT(error_of(page), Names(std::string("edge.toml:2 ") + key)) << page;
@@ -104,7 +103,7 @@ TEST_F(PageSettingsTest, AMistakeNamesFileLineAndCorrection) {
 }
 
 TEST_F(PageSettingsTest, KeysOfEarlierVersionsHaveNoEffect) {
-  EXPECT_EQ(error_of("refresh_s = 0\nprogram = 1\ntoken_file = \"not there\"\n"), "");
+  EXPECT_EQ(error_of("name = \"a\"\nrefresh_s = 0\nprogram = 1\ntoken_file = \"not there\"\n"), "");
 }
 
 }  // namespace
