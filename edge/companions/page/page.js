@@ -101,6 +101,8 @@ function showFlow(last) {
     nodes.push({x: 300, name: "House", watts: grid - battery, value: say(grid - battery, 0, "W"),
                 note: grid < battery ? "feeds in" : "load"});
   }
+  byId("measured").textContent = !last.has_measurement ? "" :
+    `Power measured at ${clock(Date.parse(last.utc))}, before the order of that control cycle.`;
   fill("flow", nodes.flatMap(({x, name, watts, value, note}) => {
     const isBack = name === "Grid" ? watts < 0 : watts > 0;  // the line starts at the node
     const flows = Math.abs(watts) >= 1 ? "flows" + (isBack ? " back" : "") : "";
