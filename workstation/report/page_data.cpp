@@ -14,6 +14,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "shared/host/csv.h"
 #include "shared/utc_text.h"
 #include "workstation/correction/rules/rule.h"
 #include "workstation/correction/student/certificate.h"
@@ -94,7 +95,7 @@ PictureFile step_file(const RunResults& in, const PageSteps& steps) {
   std::string csv = "utc,observed_eur_per_mwh,paid_eur_per_mwh";
   for (const PolicySteps& policy : steps.policies) {
     for (const char* what : {"soc_frac", "action", "power_w", "profit_eur"}) {
-      csv += fmt::format(",{} {}", policy.name, what);
+      csv += "," + csv_field(fmt::format("{} {}", policy.name, what));
     }
   }
   for_each_step(in, steps, [&](const MarketStep& step, std::size_t i) {
