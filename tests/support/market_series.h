@@ -35,7 +35,7 @@ inline MinuteSeries random_series(std::string_view start_utc, int minutes, std::
 
 /// The benchmark [SPEC 8]: real settled quarter-hours of January to May 2023, see
 /// tests/data/README.md.
-inline MinuteSeries read_yardstick() {
+inline MinuteSeries read_benchmark() {
   return read_minute_file(BESS_SOURCE_DIR "/tests/data/benchmark_minutes_2023.csv.gz");
 }
 

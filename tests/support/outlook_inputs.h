@@ -74,11 +74,11 @@ class OutlookDraw {
     return next;
   }
   void draw_answer(std::int64_t midnight, const std::vector<std::int32_t>& ahead) {
-    const int fate = below(9);
-    if (fate == 0) return;  // a lost day
-    const int minute = fate == 1 ? 14 * 60 + below(500) : 12 * 60 + 40 + below(19);
+    const int outcome = below(9);
+    if (outcome == 0) return;  // a lost day
+    const int minute = outcome == 1 ? 14 * 60 + below(500) : 12 * 60 + 40 + below(19);
     const std::int64_t received = day_before_at(midnight, minute);
-    if (fate != 2) {
+    if (outcome != 2) {
       inputs_.answers.push_back({received, midnight, ahead});
       return;
     }

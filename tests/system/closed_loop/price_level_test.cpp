@@ -236,14 +236,14 @@ void replay_month(MinuteSeries series, std::uint64_t seed) {
 }
 
 TEST(PriceLevelReplay, EqualsTheWorkstationsOverAMonthIntoSummerTime) {
-  const MinuteSeries yardstick = read_yardstick();
+  const MinuteSeries benchmark = read_benchmark();
   const std::int64_t start_utc_s = utc_of("2023-03-04T23:00:00Z");
-  const auto begin = static_cast<std::ptrdiff_t>((start_utc_s - yardstick.start_utc_s) / 60);
+  const auto begin = static_cast<std::ptrdiff_t>((start_utc_s - benchmark.start_utc_s) / 60);
   const std::ptrdiff_t minutes = 32 * kMinutesPerDay;
   const auto cut = [&](const std::vector<double>& prices) {
     return std::vector<double>(prices.begin() + begin, prices.begin() + begin + minutes);
   };
-  replay_month({start_utc_s, cut(yardstick.indicative), cut(yardstick.settled)}, 26);
+  replay_month({start_utc_s, cut(benchmark.indicative), cut(benchmark.settled)}, 26);
 }
 
 TEST(PriceLevelReplay, EqualsTheWorkstationsOverAMonthOutOfSummerTime) {

@@ -33,7 +33,7 @@ PairedDifference lead(const char* over, const Evaluation& teacher, const Evaluat
 TEST(LearningGate, TheTeacherIsAboveTheRuleAndLevelWithTabularAndTheProgram) {
   set_market_time_zone();
   const RunConfig config = load_run_config("");
-  const MarketSteps market = make_market_steps(read_yardstick(), config.market);
+  const MarketSteps market = make_market_steps(read_benchmark(), config.market);
   const TrainResult training = train_by_default(market, config);
   TeacherPolicy teacher(training.teacher);
   RuleBasedPolicy rule(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);

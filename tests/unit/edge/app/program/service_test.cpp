@@ -157,8 +157,8 @@ TEST(ServiceNotify, TheWatchdogIsRefreshedByCyclesInTimeOnly) {
 
 TEST(ServiceNotify, NeitherAMissingNorAFullSocketMatters) {
   unsetenv("NOTIFY_SOCKET");
-  ServiceNotify nobody;
-  nobody.ready();
+  ServiceNotify absent;
+  absent.ready();
   const TemporaryFolder folder;
   const NotifySocket systemd(folder.file("notify"));
   ServiceNotify notify;

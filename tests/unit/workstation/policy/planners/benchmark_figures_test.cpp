@@ -10,8 +10,8 @@
 namespace bess {
 namespace {
 
-const MinuteSeries& yardstick() {
-  static const MinuteSeries series = read_yardstick();
+const MinuteSeries& benchmark() {
+  static const MinuteSeries series = read_benchmark();
   return series;
 }
 
@@ -29,7 +29,7 @@ TEST(BenchmarkFigures, RuleTabularAndForesightOnTestDays) {
                               {1, Settlement::kMinute, true, 356.2, 557.5, 940.7}};
   for (const Setting& s : settings) {
     const MarketSteps market = make_market_steps(
-        yardstick(), {.observation_delay_min = s.delay_min, .settlement = s.settlement});
+        benchmark(), {.observation_delay_min = s.delay_min, .settlement = s.settlement});
     const std::vector<MarketDay> days = market.days_of(Split::kTest);
     EvaluationOptions options;
     options.carry_soc = s.carry_soc;

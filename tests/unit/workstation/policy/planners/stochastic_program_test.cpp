@@ -20,7 +20,7 @@ double profit(const MarketSteps& market, bool carry_soc, double level_weight) {
 }
 
 TEST(StochasticProgram, EarnsOnTheBenchmarkWhatThePrototypesEarn) {
-  const MarketSteps market = make_market_steps(read_yardstick(), {});
+  const MarketSteps market = make_market_steps(read_benchmark(), {});
   // By hour alone, as the prototype; by level at least as much: each level has its values.
   EXPECT_NEAR(profit(market, false, 0), 464.6, 6);
   EXPECT_NEAR(profit(market, true, 0), 450.9, 6);

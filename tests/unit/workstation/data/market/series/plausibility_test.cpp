@@ -26,7 +26,7 @@ std::vector<std::string> texts_of(const std::vector<Finding>& findings) {
 MinuteSeries ordinary() { return parse_minute_csv(ordinary_text(), "ordinary"); }
 
 TEST(Plausibility, RealPricesRaiseNothing) {
-  EXPECT_THAT(texts_of(implausible(read_yardstick())), IsEmpty());
+  EXPECT_THAT(texts_of(implausible(read_benchmark())), IsEmpty());
   EXPECT_THAT(texts_of(implausible(ordinary())), IsEmpty());
   EXPECT_THAT(texts_of(implausible(random_series("2023-01-01T00:00:00Z", 40'000, 7))), IsEmpty());
 }
