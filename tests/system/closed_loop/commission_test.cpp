@@ -89,6 +89,16 @@ TEST(Commission, SaysWhichDirectionItsSocDoesNotLeave) {
   EXPECT_TRUE(between.battery.orders.empty());
 }
 
+/// A step below twice the small one does not separate a lag from a ramp.
+TEST(Commission, InOneDirectionALargerStepIsAtLeastTwiceTheSmallOne) {
+  CommissionSite full(1.0);
+  full.passes({.rated_w = 999});
+  EXPECT_EQ(full.ordered(), (std::vector{0, -500, 0}));
+  CommissionSite twice(1.0);
+  twice.passes({.rated_w = 1'000});
+  EXPECT_EQ(twice.ordered(), (std::vector{0, -500, 0, -1'000, 0}));
+}
+
 /// 4029 W were once measured for 500, and "the sign is right".
 TEST(Commission, RefusesMorePowerThanOrderedAndEndsItImmediately) {
   for (const double gain : {8.06, 1.5, -8.0}) {

@@ -17,6 +17,17 @@ namespace {
 
 constexpr double kStandbyW = 35;
 
+/// A constant rise says nothing of its end: that is the order, with 5 % of standard deviation.
+TEST(StepFit, AStepSeenForAThirdIsExpectedToReachItsOrder) {
+  StepResponse curve(3'000, 150);
+  for (int s = 0; s <= 10; ++s) {
+    curve.add({.begin_ms = s * 1'000, .end_ms = s * 1'000, .along_w = 100 * s});
+  }
+  const StepResponse* const two[] = {&curve, &curve};
+  const SecondsOfStep seconds = StepFit(two).seconds_until(3'000, 30);
+  EXPECT_GT(seconds.least, 30 * (1 - 3 * 0.05));
+}
+
 /// Orders and readings of the plain simulated device, as they go over its bus.
 class RecordedStepsTest : public ::testing::Test {
  protected:

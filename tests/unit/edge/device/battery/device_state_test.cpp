@@ -234,6 +234,29 @@ TEST(OptionalPoint, AnAbsentUnitBehindAGatewayIsDoneWithout) {
   }
 }
 
+/// A register that the device lacks splits the reads around it, and no others.
+TEST(OptionalPoint, SplitsOnlyReadsOfItsUnitTableAndPlace) {
+  RegisterMap map;
+  map.read_gap_registers_max = 10;
+  const auto at = [](std::int32_t unit, std::uint8_t function, std::uint16_t address) {
+    return PlacedPoint{
+        .place = {.unit = unit, .address = address, .count = 1, .function = function}};
+  };
+  const auto reads = [&](const PlacedPoint& missing) {
+    PlacedPoints points, refused;
+    points.push_back(at(1, 3, 100));
+    points.push_back(at(1, 3, 104));
+    refused.push_back(missing);
+    ReadPlan plan;
+    plan_reads(map, points, refused, plan);
+    return plan.size();
+  };
+  EXPECT_EQ(reads(at(1, 3, 102)), 2);
+  for (const PlacedPoint& elsewhere : {at(2, 3, 102), at(1, 4, 102), at(1, 3, 99), at(1, 3, 105)}) {
+    EXPECT_EQ(reads(elsewhere), 1) << elsewhere.place.address;
+  }
+}
+
 /// Any other answer may be temporary: the register is still read.
 TEST(OptionalPoint, IsNotAbandonedForAnotherException) {
   MapUnderTest t(shipped_map("victron_ess3"), fill_victron);

@@ -111,6 +111,14 @@ TEST_F(MapFormat, FloatsBecomeWholeUnits) {
   EXPECT_FALSE(decodes_) << "not a number";
   decoded("type = \"f32\"", {0x7F80, 0});
   EXPECT_FALSE(decodes_) << "infinity";
+  RegisterPoint any;  // no range rejects what rounding makes of it
+  any.type = RegisterType::kF32;
+  any.registers = 2;
+  any.value_min = INT64_MIN;
+  any.value_max = INT64_MAX;
+  const std::uint16_t not_a_number[] = {0x7FC0, 0};
+  std::int64_t value = 0;
+  EXPECT_FALSE(decode(any, not_a_number, value));
 }
 
 TEST_F(MapFormat, WideNumbers) {
@@ -303,6 +311,8 @@ TEST_F(MapFormat, EveryMistakeHasItsCorrection) {
       {"active = [\"enable = 1\"]", "alarms = [\"soc has 16384\"]",
        "\"soc 16384\" \"soc\" 0 10000"},
       {"active = [\"enable = 1\"]", "alarms = [\"enable has 65536\"]", "65536 \"enable\" 0 65535"},
+      {"active = [\"enable = 1\"]", "alarms = [\"battery_power has 65536\"]",  // bit 16 of 0 to 15
+       "65536 \"battery_power\" -1000 1000"},
       {"active = [\"enable = 1\"]", "warnings = [\"enable has 0\"]", "\"enable has 0\""},
       {"active = [\"enable = 1\"]", "off_grid = \"soc = 10001\"", "\"soc\" 0 10000"},
       {"measure = [\"soc\", ", "measure = [", "\"soc\""},

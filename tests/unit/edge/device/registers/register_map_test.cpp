@@ -98,6 +98,14 @@ TEST(Codec, EncodeInvertsDecodeForEveryTypeAndWordOrder) {
   }
 }
 
+/// Before a device is read, its scale factor is the map's least: 10^-2.
+TEST(Codec, WithoutADeviceScalesAreAssumed) {
+  const RegisterMap map = load_shipped_map({"sunspec_704", ""});
+  ASSERT_EQ(map.points[find_point(map, "set_power_sf")].value_min, -2);
+  EXPECT_THAT(registers_of(map, Command::kCharge, 0, order_of(4'000)),
+              ElementsAre(1, 0xFFF9, 0xE580));  // -400000
+}
+
 TEST(MapFile, UnknownVariantNamesTheKnownOnes) {
   RegisterMap map;
   std::string error;
