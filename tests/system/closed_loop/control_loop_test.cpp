@@ -24,6 +24,18 @@ TEST(ClosedLoop, ReadOnlyNeverWrites) {
   EXPECT_EQ(plant.battery.releases, 0);
 }
 
+/// It has no orders that another controller could replace.
+TEST(ClosedLoop, ReadOnlyLosesNoOrderToAnotherController) {
+  Plant plant(0.5, ControlSettings{});
+  plant.battery.physics.start_dispatch(1'000, 1.0, 3'600);
+  for (int i = 0; i < 10; ++i) {
+    const CycleRecord record = plant.cycle();
+    EXPECT_TRUE(record.measurement.dispatch_active);
+    EXPECT_FALSE(is_stop_reason(record.reason));
+    EXPECT_EQ(record.replaced_orders, 0);
+  }
+}
+
 TEST(ClosedLoop, NothingIsOrderedBeforeAllIsKnown) {
   Plant plant;
   plant.prices.outage = true;

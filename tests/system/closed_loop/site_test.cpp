@@ -143,6 +143,25 @@ TEST(Site, ACutThatFailsIsMadeAgain) {
   EXPECT_EQ(record.mode, Mode::kRunning);  // a failure between two ticks does not release it
 }
 
+/// The new order would hide the loss.
+TEST(Site, AnOrderThatWasLostIsNotCut) {
+  for (const bool is_replaced : {true, false}) {
+    House house(metered({.import_w_max = 5'000, .margin_w = 0}), HouseLoad::constant(500));
+    house.let_it(kCharge);
+    house.cycle();
+    house.battery.changed = [&](BatteryMeasurement& m) {
+      const bool is_lost = house.battery.orders.size() == 1;  // until another order
+      m.order_replaced = is_lost && is_replaced;
+      m.order_ended = is_lost && !is_replaced;
+    };
+    house.use(4'200);
+    const CycleRecord record = house.cycle();
+    EXPECT_EQ(record.site.order_cuts, 0);
+    EXPECT_EQ(record.replaced_orders, is_replaced ? 1 : 0);
+    EXPECT_EQ(record.ended_orders, is_replaced ? 0 : 1);
+  }
+}
+
 TEST(Site, ACutThatChangesItsDirectionCountsAsAReversal) {
   ConnectionSettings connection{.peak_w_max = 2'000, .margin_w = 0};
   House house(metered(connection), HouseLoad::constant(0));
