@@ -72,6 +72,39 @@ TEST(MeterCheck, OneContradictionIsWithdrawnImmediatelyAndForgiven) {
   EXPECT_EQ(c.meter_check.trust().doubt, 0);
 }
 
+/// Time constant 600 s: a change of 3 kW excuses a step of 4 kW, and after three of them 150 W do
+/// not.
+TEST(MeterCheck, AHouseThatHasBecomeQuietExcusesNothing) {
+  for (const int quiet_cycles : {0, 15}) {
+    Connection c;
+    for (int i = 0; i < 4; ++i) {
+      c.house_w = i % 2 == 0 ? 3'400 : 400;
+      c.read();
+      c.utc_s += 30;
+    }
+    for (int i = 0; i < quiet_cycles; ++i) c.cycle(0);
+    c.order(4'000);
+    c.utc_s += 27;
+    c.house_w -= 4'000;
+    c.read();
+    EXPECT_EQ(c.meter_check.trust().doubt, quiet_cycles == 0 ? 0 : 3) << quiet_cycles;
+  }
+}
+
+/// An inverted meter shows the step with the other sign; half as much again, and twice the error
+/// of 100 W, is no meter.
+TEST(MeterCheck, AStepThatIsFarMoreThanInvertedIsTheHouse) {
+  for (const std::int32_t along_w : {-4'000, -6'200, -6'201, -8'000}) {
+    Connection c;
+    c.read();
+    c.order(4'000);
+    c.utc_s += 27;
+    c.house_w += along_w - 4'000;
+    c.read();
+    EXPECT_EQ(c.meter_check.trust().doubt, along_w < -6'200 ? 0 : 3) << along_w;
+  }
+}
+
 TEST(MeterCheck, ARatioNearOneIsFoundByItsSums) {
   for (const double ratio : {0.65, 1.5}) {
     Connection c;

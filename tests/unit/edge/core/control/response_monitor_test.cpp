@@ -117,6 +117,16 @@ TEST(ResponseMonitor, NoPowerInTheMiddleOfTheChargeIsNoAnswer) {
   EXPECT_EQ(site.monitor.trip(), std::nullopt);
 }
 
+/// The noise is 200 W: up to twice that, 0 W is no evidence.
+TEST(ResponseMonitor, NoPowerProvesNothingUpToTwiceTheNoise) {
+  for (const std::int32_t ordered_w : {300, 400, 410}) {
+    MonitoredSite site;
+    for (int i = 0; i < 2; ++i) site.step(ordered_w, 0);
+    EXPECT_EQ(site.monitor.gives_no_answer(), ordered_w > 400) << ordered_w;
+    EXPECT_EQ(site.monitor.weak_answers(), ordered_w > 400 ? 2 : 0) << ordered_w;
+  }
+}
+
 /// README: an order of 0 W restarts the count.
 TEST(ResponseMonitor, UnansweredOrdersAreCountedInARow) {
   MonitoredSite site;
@@ -261,8 +271,9 @@ TEST(ResponseMonitor, SurplusSunMayChargeWhereTheMapSaysSo) {
   ResponseSettings settings;
   settings.band.charges_by_itself = true;
   ResponseMonitor monitor{settings};
-  for (int i = 0; i < 8; ++i) {
-    monitor.observe(driven_reading(120 * i, i < 4 ? 0 : -1'000, 2'500, 120, 5'000 + 100 * i));
+  for (int i = 0; i < 12; ++i) {
+    const std::int32_t ordered_w = i < 4 ? 0 : i < 8 ? -1'000 : 1'000;
+    monitor.observe(driven_reading(120 * i, ordered_w, 2'500, 120, 5'000 + 100 * i));
   }
   EXPECT_EQ(monitor.trip(), std::nullopt);
 }
