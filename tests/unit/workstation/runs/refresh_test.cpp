@@ -58,7 +58,7 @@ TEST_F(RefreshCommand, KilledAtItsStagesEndsWithTheSameBytes) {
   make_run(kIdleProgram, small_series(31));
   EXPECT_THAT(refresh("next.csv").output, Names("next.csv"));  // does not exist yet
   EXPECT_FALSE(fs::exists(path("site.proposal")));
-  write_minute_file(path("next.csv"), small_series(36), "");   // trained to 25 January
+  write_minute_file(path("next.csv"), small_series(36), "");  // trained to 25 January
   EXPECT_THAT(said(command("next.csv", true)), Names("2023-01-25 2023-02-05 14"));
   EXPECT_THAT(folders(), testing::ElementsAre("site"));
   write_minute_file(path("next.csv"), small_series(75), "");
