@@ -66,6 +66,7 @@ TEST(Hold, HoldsUntilItsEndAndNotLongerThanAllowed) {
   EXPECT_FALSE(hold_at(hold, kSoon).held);
   EXPECT_FALSE(hold_at(Hold{}, kNow).held);
   EXPECT_TRUE(hold_at(hold, kSoon - kHoldSecondsMax).held);
+  EXPECT_TRUE(hold_at(hold, kSoon - kHoldSecondsMax - kHoldSecondsMin).held);
   const HoldReport of_a_wrong_clock = hold_at(hold, kSoon - kHoldSecondsMax - 121);
   EXPECT_FALSE(of_a_wrong_clock.held);
   EXPECT_TRUE(of_a_wrong_clock.unreadable);

@@ -624,6 +624,10 @@ TEST_F(DriverTest, PowerBeyondTheMapIsRefusedWithoutAWrite) {
   EXPECT_EQ(t.order(10'001), Status::kNotExpressible);
   EXPECT_EQ(t.order(-10'001), Status::kNotExpressible);
   EXPECT_THAT(t.device.writes, IsEmpty());
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  t.device.take_writes();
+  EXPECT_EQ(t.order(10'001), Status::kNotExpressible);
+  EXPECT_THAT(t.device.writes, IsEmpty()) << "the timer ends the previous order";
 }
 
 }  // namespace
