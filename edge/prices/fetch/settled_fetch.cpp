@@ -114,8 +114,8 @@ std::vector<SettledQuarter> parse_settled(std::string_view text, std::string& tr
 }
 
 void SettledSchedule::tried(std::int64_t now_utc_s, bool is_whole, double wait_s) {
-  constexpr std::int64_t kFirstPauseS = 900, kLongestPauseS = 4 * 3'600;
-  pause_s_ = is_whole ? 0 : std::clamp(2 * pause_s_, kFirstPauseS, kLongestPauseS);
+  constexpr std::int64_t kPauseMinS = 900, kPauseMaxS = 4 * 3'600;
+  pause_s_ = is_whole ? 0 : std::clamp(2 * pause_s_, kPauseMinS, kPauseMaxS);
   // After the next midnight, when another day may be available; not at the peak load of midnight.
   constexpr std::int64_t kBehindMidnightS = 2 * 3'600;
   const std::int64_t tomorrow_utc_s = local_midnight_utc_s(now_utc_s, 1) + kBehindMidnightS;
