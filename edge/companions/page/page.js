@@ -39,8 +39,10 @@ function element(name, text = "", ...children) {
   return made;
 }
 const fill = (id, elements) => byId(id).replaceChildren(...elements);
+/** Text of a program without its marks of commands. */
+const plain = (text) => text.replaceAll("`", "");
 const lines = (id, texts, name) =>
-  fill(id, texts.filter((text) => text).map((text) => element(name, text)));
+  fill(id, texts.filter((text) => text).map((text) => element(name, plain(text))));
 
 async function ask(path) {
   const answer = await fetch(path, {cache: "no-store", redirect: "error"});
@@ -50,8 +52,6 @@ async function ask(path) {
   return answer.headers.get("Content-Type").startsWith("text/csv") ? text : JSON.parse(text);
 }
 
-/** Text of a program for the page, without its marks of commands. */
-const plain = (text) => text && text.replaceAll("`", "");
 const does = (watts) => watts > 0 ? `charges at ${say(watts, 0, "W")}`
   : watts < 0 ? `discharges at ${say(-watts, 0, "W")}` : "is idle";
 const isRunning = () => state.health !== "not running";
@@ -62,7 +62,7 @@ function showStatus(status) {
   document.title = byId("name").textContent = status.name || "Battery";
   byId("health").textContent = status.health;
   byId("health").className = "badge " + kind;
-  lines("problems", [...status.health_reasons.map(plain), status.unknown,
+  lines("problems", [...status.health_reasons, status.unknown,
                      status.contact && "Call: " + status.contact], "li");
   for (const problem of byId("problems").children) {
     problem.classList.toggle("bad", problem.textContent.startsWith("CRITICAL"));
@@ -123,9 +123,7 @@ function showNext(next, noEffect) {
     texts.push(
       `At ${next.local} it ${does(next.power_w)} if price and state of charge stay.`);
   }
-  if (next?.reason) {
-    texts.push(plain(`${next.reason} overrides it${next.ends && ", " + next.ends}.`));
-  }
+  if (next?.reason) texts.push(`${next.reason} overrides it${next.ends && ", " + next.ends}.`);
   for (const change of next?.reserve_changes || []) {
     texts.push(`Reserve from ${moment(change.utc)}: ${percent(change.soc_percent)}.`);
   }
@@ -138,7 +136,7 @@ function showNext(next, noEffect) {
 function showWhy(why) {
   const at = why.margins;
   const cause = why.reason !== "student"
-    ? `${plain(why.meaning)} (${why.reason}) since ${moment(why.since_utc)}`
+    ? `${why.meaning} (${why.reason}) since ${moment(why.since_utc)}`
     : `the price of ${price(why.price_eur_per_mwh)} is ` +
       (why.ordered_power_w > 0 ? "low" : why.ordered_power_w < 0 ? "high" : "neither low nor high");
   const what = !isRunning()
@@ -146,7 +144,7 @@ function showWhy(why) {
     : why.mode !== "running" ? `No control, mode ${why.mode}`
     : state.control ? `The battery ${does(why.ordered_power_w)}`
     : `Read-only, nothing is written; decided: ${say(why.ordered_power_w, 0, "W")}`;
-  byId("sentence").textContent = `${what}: ${cause}${why.ends && ", " + plain(why.ends)}.`;
+  byId("sentence").textContent = plain(`${what}: ${cause}${why.ends && ", " + why.ends}.`);
   const texts = [
     `${why.local}: ${isPriced(why.reason) ? "" : "last "}price ` +
     `${price(why.price_eur_per_mwh)}, state of charge ${percent(why.soc_percent)}. ` +
@@ -184,7 +182,7 @@ function showMonth(month) {
     `In control ${percent(100 * month.stops.driven_share)} of the time.` +
     (month.stops.by_reason.length > 0 ? " Control cycles by other reasons than the student:" : "");
   lines("stops", month.stops.by_reason.map(
-    (stop) => `${plain(stop.meaning)} (${stop.reason}): ${say(stop.cycles)}, ` +
+    (stop) => `${stop.meaning} (${stop.reason}): ${say(stop.cycles)}, ` +
       `${say(stop.not_driven)} of them not driven`), "li");
   lines("columns", ["day", ...kColumns.map(([head]) => head)], "th");
   fill("days", month.days.map((day) => element("tr", "", element("th", day.date),
@@ -298,9 +296,9 @@ function drawMap({columns}) {
   const now = {x: last.has_measurement ? last.soc_e4 / 100 : NaN,
                y: isPriced(last.reason) ? last.price_centi_eur_per_mwh / 100 : NaN};
   const points = (key) => columns.map((column) => ({x: column.soc_percent, y: column[key]}));
-  const prices = [...(Number.isNaN(now.y) ? [] : [now.y]),
-                  ...points("charge_up_to_eur_per_mwh").map(({y}) => y),
-                  ...points("discharge_from_eur_per_mwh").map(({y}) => y)];
+  const shown = [now, ...points("charge_up_to_eur_per_mwh"),
+                 ...points("discharge_from_eur_per_mwh")];
+  const prices = shown.map(({y}) => y).filter((y) => !Number.isNaN(y));
   const min = 50 * Math.floor(Math.min(...prices) / 50 - 1);
   const max = 50 * Math.ceil(Math.max(...prices) / 50 + 1);
   drawChart("map", () => ({

@@ -245,18 +245,26 @@ void write_backtest(const RunFolder& folder, const std::string& learnt_from, con
   write_file(folder.path / kRunsBacktest / kBacktestJson, json.text());
 }
 
-TEST(RunBacktest, IsTakenWhenItIsOfTheSamePricesSeedAndKeys) {
-  const TemporaryFolder temporary;
-  const RunFolder folder{temporary.file("run")};
-  RunConfig config;
-  config.set_seed(7);
-  const RunRecord record = record_of(config);
-  EXPECT_THAT(walk_forward_text(walk_forward_of(folder, record)),
+class RunBacktest : public testing::Test {
+ protected:
+  static RunConfig seeded(std::uint64_t seed) {
+    RunConfig config;
+    config.set_seed(seed);
+    return config;
+  }
+  const TemporaryFolder temporary_;
+  const RunFolder folder_{temporary_.file("run")};
+  const RunConfig config_ = seeded(7);
+  const RunRecord record_ = record_of(config_);
+};
+
+TEST_F(RunBacktest, IsTakenWhenItIsOfTheSamePricesSeedAndKeys) {
+  EXPECT_THAT(walk_forward_text(walk_forward_of(folder_, record_)),
               Names("bess-train backtest --seed 7 --out RUN/backtest"));
   EXPECT_EQ(with_run_folder("--out RUN/backtest RUN/a", "x/run"), "--out x/run/backtest x/run/a");
-  const std::string identity = learning_identity(record.value("prices"), config);
-  write_backtest(folder, identity, kChainName);
-  const WalkForwardOfRun walk = walk_forward_of(folder, record);
+  const std::string identity = learning_identity(record_.value("prices"), config_);
+  write_backtest(folder_, identity, kChainName);
+  const WalkForwardOfRun walk = walk_forward_of(folder_, record_);
   ASSERT_TRUE(walk.figure.has_value()) << walk.why_none;
   EXPECT_THAT(walk_forward_text(walk), Names("412.3 20.2 31.5 90 3"));
   EXPECT_THAT(walk_forward_html(walk), HasSubstr("<a href=\"backtest/backtest.html\">"));
@@ -264,29 +272,22 @@ TEST(RunBacktest, IsTakenWhenItIsOfTheSamePricesSeedAndKeys) {
               HasSubstr("\"profit_eur_per_day_per_mwh\":412.3456"));
 }
 
-TEST(RunBacktest, OfAnythingElseIsNotTaken) {
-  const TemporaryFolder temporary;
-  const RunFolder folder{temporary.file("run")};
-  RunConfig config;
-  config.set_seed(7);
-  const RunRecord record = record_of(config);
-  RunConfig other = config;
+TEST_F(RunBacktest, OfAnythingElseIsNotTaken) {
+  RunConfig other = config_;
   other.battery.wear_eur_per_mwh = 25;
-  RunConfig seeded = config;
-  seeded.set_seed(8);
   for (const std::string& identity :
-       {learning_identity(record.value("prices"), other),
-        learning_identity(record.value("prices"), seeded),
-        learning_identity("crc32 00000000, 7 minutes from 2023-01-01T00:00:00Z", config)}) {
-    write_backtest(folder, identity, kChainName);
-    const WalkForwardOfRun walk = walk_forward_of(folder, record);
+       {learning_identity(record_.value("prices"), other),
+        learning_identity(record_.value("prices"), seeded(8)),
+        learning_identity("crc32 00000000, 7 minutes from 2023-01-01T00:00:00Z", config_)}) {
+    write_backtest(folder_, identity, kChainName);
+    const WalkForwardOfRun walk = walk_forward_of(folder_, record_);
     EXPECT_FALSE(walk.figure.has_value());
     EXPECT_THAT(walk.why_none, Names("backtest/backtest.json bess-train backtest --seed 7"));
   }
-  write_backtest(folder, learning_identity(record.value("prices"), config), "sdp");
-  EXPECT_THAT(walk_forward_of(folder, record).why_none, Names("backtest/backtest.json student"));
-  write_file(folder.path / kRunsBacktest / kBacktestJson, "{ half of a");
-  EXPECT_FALSE(walk_forward_of(folder, record).figure.has_value());
+  write_backtest(folder_, learning_identity(record_.value("prices"), config_), "sdp");
+  EXPECT_THAT(walk_forward_of(folder_, record_).why_none, Names("backtest/backtest.json student"));
+  write_file(folder_.path / kRunsBacktest / kBacktestJson, "{ half of a");
+  EXPECT_FALSE(walk_forward_of(folder_, record_).figure.has_value());
 }
 
 // Many runs on one page: finished ones with figures, and the state of the others.
